@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <string_view>
 #include <utility>
+#include <vector>
 
+#include "scene_structure.h"
 #include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -21,33 +23,46 @@ std::uint64_t checksum(std::string_view bytes) {
   return value;
 }
 
-template <class Items>
-std::string names_of(const std::string& kind, const Items& items) {
-  NameList names;
-  for (const auto& item : items) names.add(item.name);
-  return kind + " " + names.text("none");
-}
-
-/// What may not differ.
-std::string outline_of(const SceneDesc& scene) {
-  return names_of("cables", scene.cables) + ", " + names_of("nets", scene.nets) + ", " + names_of("bodies", scene.bodies) + ", " +
-         names_of("junctions", scene.junctions) + ", " + names_of("guides", scene.guides);
+void write_structure(const SceneDesc& scene, ByteWriter& bytes) {
+  for (const auto& [kind, texts] : structure_of(scene)) {
+    bytes(texts.size());
+    for (const std::string& text : texts) bytes.write_text(text);
+  }
 }
 
 [[noreturn]] void refuse(const std::string& reason) {
   throw std::invalid_argument("data: " + reason + "; allowed: what a world with such a scene has saved");
 }
 
+/// That scenes differ in numbers only, of which the world has its own.
+void require_structure(const SceneDesc& scene, ByteReader& bytes) {
+  std::string of_bytes, here;
+  for (const auto& [kind, texts] : structure_of(scene)) {
+    std::vector<std::string> given(bytes.read_length());
+    for (std::string& text : given) text = bytes.read_text();
+    if (given == texts) continue;
+    const auto add = [name = kind](const std::vector<std::string>& names, std::string& list) {
+      list += (list.empty() ? "" : "; ") + name + " " + NameList(names).text();
+    };
+    add(given, of_bytes);
+    add(texts, here);
+  }
+  if (!here.empty()) refuse("it is of a scene with " + of_bytes + ", and this one has " + here);
+}
+
 WorldFile read_parts(const SceneDesc& scene, ByteReader& bytes) {
   const std::string version = bytes.read_text();
   if (version != VERLET_CABLE_VERSION)
     refuse("version " + quoted(version) + " of the package has saved it, and this is " + VERLET_CABLE_VERSION);
-  const std::string outline = bytes.read_text(), here = outline_of(scene);
-  if (outline != here) refuse("it is of a scene with " + outline + ", and this one has " + here);
+  require_structure(scene, bytes);
   SceneDesc at_first = scene;
   set_numbers(bytes.read_text(), at_first);
   WorldFile file{std::make_shared<const SceneDesc>(std::move(at_first)), World(scene), {}};
   file.world.restore(bytes.read_text());
+  // Names and counts are in the numbers of cables and nets, too.
+  const SceneStructure wanted = structure_of(scene);
+  if (structure_of(*file.scene_at_first) != wanted || structure_of(file.world.scene()) != wanted)
+    refuse("it is not of one scene");
   file.frames = bytes.read_text();
   return file;
 }
@@ -57,7 +72,7 @@ WorldFile read_parts(const SceneDesc& scene, ByteReader& bytes) {
 std::string write_world(const SceneDesc& scene_at_first, const World& world, const std::string& frames) {
   ByteWriter bytes;
   bytes.write_text(VERLET_CABLE_VERSION);
-  bytes.write_text(outline_of(scene_at_first));
+  write_structure(scene_at_first, bytes);
   bytes.write_text(numbers_of(scene_at_first));
   bytes.write_text(world.save());
   bytes.write_text(frames);

@@ -304,7 +304,7 @@ def test_a_scene_of_another_kind_is_refused(hang, scene):
         other['cables'][0].update(keys)
         return other
 
-    for other, text in ((cable(segments=21), r'world.cables: hose of 21 segments; allowed: .*hose of 20'),
+    for other, text in ((cable(segments=21), r'world.cables: hose of 21 segments of wire; allowed: .*hose of 20'),
                         (cable(name='pipe'), 'world.cables: pipe'),
                         (changed(time_step=0.002), 'world.time_step: 0.002 s'),
                         (cable(name='pipe', segments=7), 'world.cables: pipe of 7 segments')):

@@ -1,4 +1,5 @@
 """cable_convert makes scenes of USD curves and MuJoCo cables, and cable_sim --usd and --vtk write what --output has."""
+import json
 import math
 import os
 import subprocess
@@ -9,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from verlet_cable.convert.cables import scene_text
 from verlet_cable.convert.errors import ConvertError
 from verlet_cable.convert.mujoco_cables import mujoco_cables
 from verlet_cable.convert.usd_cables import usd_cables
@@ -118,6 +120,115 @@ def test_a_flat_cable_is_stiffer_across():
     assert cable.radius == pytest.approx(math.sqrt(4 * 0.004 * 0.001 / math.pi))
 
 
+FLAT = (MUJOCO.replace('type="capsule" size=".005"', 'type="box" size="0.025 0.02 0.0015"').replace('value="2e6"', 'value="1e7"')
+        .replace('value="1e6"', 'value="1e8"'))
+
+
+@pytest.mark.parametrize('initial', ['none', 'ball'])
+def test_a_flat_cable_lies_as_in_mujoco(initial):
+    """A belt on its edge, as its body is turned by a quarter: it sinks by its own weight as a beam of its height does."""
+    model = FLAT.replace('initial="none"', f'initial="{initial}"').replace('euler="0 0 90"', 'euler="90 0 0"')
+    found = mujoco_cables(model)
+    cable, = found.cables
+    if initial == 'ball':
+        # Without a clamp, y is level: the stiffnesses change places.
+        assert cable.bending_stiffness == pytest.approx([0.16, 0.0009])
+        return
+    world = World(Scene.from_yaml(scene_text(found, 'belt.xml')))
+    assert world.settle()
+    weight = 1200 * 0.04 * 0.003 * 9.8
+    assert 1 - world.positions('wire')[-1, 2] == pytest.approx(weight * 0.5 ** 4 / 8 / 0.16, rel=0.01)
+
+
+def test_a_flat_cable_bends_about_its_first_bend():
+    """Its first body has y in the plane of the first two segments."""
+    bent = FLAT.replace('curve="s" count="11 1 1" size="0.5"', 'vertex="0 0 0 1 0 0 1 1 0 0 1 0"')
+    bent = bent.replace('euler="0 0 90"', 'euler="90 0 0"')
+    cable, = mujoco_cables(bent).cables
+    np.testing.assert_allclose(cable.y_axis, [0, 0, 1], atol=1e-12)
+    free, = mujoco_cables(bent.replace('initial="none"', 'initial="free"').replace('euler="90 0 0"', 'euler="45 0 0"')).cables
+    assert free.y_axis is None
+    turned = mujoco_cables(bent.replace('initial="none"', 'initial="free"').replace('euler="90 0 0"', 'euler="30 0 0"')).notes
+    assert any('its section is turned by 30 degrees about it' in note for note in turned)
+
+
+def test_options_of_mujoco_are_followed():
+    assert mujoco_cables(MUJOCO.replace('timestep="0.004" ', '')).time_step == 0.002
+    assert mujoco_cables(MUJOCO.replace('<option timestep="0.004" gravity="0 0 -9.8"/>', '')).time_step == 0.002
+    still = MUJOCO.replace('-9.8"/>', '-9.8"><flag gravity="disable"/></option>')
+    assert mujoco_cables(still).gravity == [0, 0, 0]
+
+
+def test_the_weight_of_caps_is_told():
+    # 10 capsules of 0.05 m and 4/3 of 5 mm each more.
+    assert any('it weighs 13.3 % more in MuJoCo' in note for note in mujoco_cables(MUJOCO).notes)
+    assert not any('capsules' in note for note in mujoco_cables(MUJOCO.replace('density="1200"', 'mass="0.1"')).notes)
+
+
+CURVE = """#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+def Xform "rig" HEAD
+{
+    token visibility = "SEEN"
+    def BasisCurves "hair"
+    {
+        KIND
+        int[] curveVertexCounts = [COUNT]
+        point3f[] points = [POINTS]
+        float[] widths = [0.02]
+    }
+}
+"""
+
+
+def curve(points=((0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)), kind='', head='', seen='inherited'):
+    text = CURVE.replace('KIND', kind).replace('HEAD', head).replace('SEEN', seen).replace('COUNT', str(len(points)))
+    return text.replace('POINTS', ', '.join(map(str, points)))
+
+
+@pytest.mark.parametrize('kind, points, ends, middle', [
+    ('uniform token basis = "bezier"', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], [(0, 0, 0), (1, 0, 0)], (0.5, 0.75, 0)),
+    ('', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], [(0, 0, 0), (1, 0, 0)], (0.5, 0.75, 0)),
+    ('uniform token basis = "bspline"', [(0, 0, 0), (0, 6, 0), (6, 6, 0), (6, 0, 0)], [(1, 5, 0), (5, 5, 0)], (3, 5.75, 0)),
+    ('uniform token basis = "catmullRom"', [(0, 0, 0), (0, 1, 0), (1, 1, 0), (1, 0, 0)], [(0, 1, 0), (1, 1, 0)], (0.5, 1.125, 0)),
+    ('uniform token basis = "catmullRom"\nuniform token wrap = "pinned"', [(0, 0, 0), (1, 0, 0), (2, 0, 0)], [(0, 0, 0), (2, 0, 0)],
+     (1, 0, 0)),
+])
+def test_cubic_curves_are_evaluated(kind, points, ends, middle):
+    cable, = usd_cables(curve(points, kind)).cables
+    np.testing.assert_allclose(cable.points[[0, -1]], ends, atol=1e-12)
+    np.testing.assert_allclose(cable.points[len(cable.points) // 2], middle, atol=1e-12)
+
+
+@pytest.mark.parametrize('changed, why', [({'head': '(active = false)'}, 'it is not active'),
+                                          ({'seen': 'invisible'}, 'it is invisible at the start')])
+def test_what_is_not_there_is_no_cable(changed, why):
+    other = curve().split(')', 1)[1].replace('"rig"', '"other"')
+    found = usd_cables(curve(**changed) + other)
+    assert [cable.element for cable in found.cables] == ['/other/hair']
+    assert f'/rig: {why}: left out' in found.notes
+    with pytest.raises(ConvertError, match=f'no BasisCurves.*\n/rig: {why}'):
+        usd_cables(curve(**changed))
+    with pytest.raises(ConvertError, match='it only changes a prim of another file'):
+        usd_cables(curve().replace('def Xform', 'over'))
+
+
+@pytest.mark.parametrize('name, text, error', [
+    ('a.usda', '#usda 1.0\n' + 'def Xform "X" {\n' * 20000, 'line 103: more than 100 brackets in each other'),
+    ('a.usda', '#usda 1.0\ndef Xform "X" { float[] a = ' + '[' * 20000, 'line 2: more than 100 brackets in each other'),
+    ('a.xml', '<mujoco><worldbody>' + '<body>' * 5000 + '</body>' * 5000 + '</worldbody></mujoco>', '<body>: inside of 101 others'),
+    ('a.xml', MUJOCO.replace('11 1 1', '1000000000 1 1'), "count: '1000000000 1 1'; allowed: at most 100001"),
+    ('a.usda', curve([(0, 0, 0)] * 5), '/rig/hair.curveVertexCounts: 5; allowed: at least 4 for a curve of basis "bezier", 3 more'),
+], ids=['prims', 'lists', 'bodies', 'points', 'bezier'])
+def test_files_without_measure_are_refused(tmp_path, name, text, error):
+    (tmp_path / name).write_text(text)
+    done = run(tmp_path / name, tmp_path / 'out.yaml')
+    assert done.returncode == 2 and error in done.stderr and 'Traceback' not in done.stderr, done.stderr
+
+
 @pytest.mark.parametrize('name, text', [('a.usda', USD), ('a.xml', MUJOCO)])
 def test_the_program_writes_scenes_that_run(tmp_path, name, text):
     (tmp_path / name).write_text(text)
@@ -145,7 +256,7 @@ def test_the_program_writes_scenes_that_run(tmp_path, name, text):
     ('a.xml', '<robot/>', '<robot>; allowed: <mujoco>'),
     ('a.xml', MUJOCO.replace('11 1 1', '1.5'), '<composite prefix="wire"> count: \'1.5\'; allowed: an integer from 2'),
     ('a.xml', MUJOCO.replace('curve="s"', 'curve="tan(s)"'), '<composite prefix="wire"> curve: \'tan(s)\'; allowed: up to three of'),
-    ('a.xml', MUJOCO.replace('2e6', 'stiff'), "<config> value: 'stiff'; allowed: 1 finite numbers"),
+    ('a.xml', MUJOCO.replace('2e6', 'stiff'), "<config> value: 'stiff'; allowed: a finite number"),
     ('a.xml', MUJOCO.replace('2e6', '-1'), '<composite prefix="wire"> bend: -1; allowed: 0 or more [Pa]'),
     ('a.xml', MUJOCO.replace('elasticity.cable"', 'elasticity.shell"'), "plugin: 'mujoco.elasticity.shell'; allowed: "),
     ('a.xml', MUJOCO.replace('.005"', '0"'), "geom size: '0'; allowed: numbers above 0 [m]"),
@@ -241,6 +352,54 @@ def test_what_was_written_can_be_converted(exported):
     for cable in found.cables:
         if cable.name in rows[0]:
             np.testing.assert_array_equal(cable.points, np.array(rows[0][cable.name])[:, :3])
+
+
+def test_usd_has_a_width_for_each_point_after_a_break_too(cable_sim, tmp_path):
+    rope, other = BREAKING['cables']
+    sections = dict(rope, sections=[{'from': 0.5, 'to': 1.0, 'material': 'thick'}])
+    cable_sim(dict(BREAKING, cables=[sections, other]), '--duration', '0.5', '--rate', '50', '--usd', 'a.usda')
+    _, (world,) = read_usda((tmp_path / 'a.usda').read_text())
+    curves = {prim.name: prim.attributes for prim in world.children[0].children}
+    assert len(curves) > 2, 'the rope must break'
+    for attributes in curves.values():
+        if attributes['widths'].metadata['interpolation'] == 'constant':
+            assert len(attributes['widths'].value) == 1
+            continue
+        for code in range(26):
+            assert len(at(attributes['widths'], code)) == len(at(attributes['points'], code))
+    # Its first piece has one radius.
+    np.testing.assert_allclose(sorted(set(at(curves['rope']['widths'], 0))), [0.01, 0.025, 0.04])
+    assert set(at(curves['rope']['widths'], 25)) == {0.01}
+
+
+def vtk_names(folder):
+    return sorted(path.name for path in folder.iterdir())
+
+
+def test_vtk_leaves_nothing_of_an_earlier_run(cable_sim, tmp_path):
+    cable_sim(BREAKING, '--duration', '0.1', '--rate', '50', '--vtk', 'new')
+    cable_sim(BREAKING, '--duration', '0.2', '--rate', '50', '--vtk', 'old')
+    (tmp_path / 'old/notes.txt').write_text('kept')
+    assert 'cables_0010.vtp' in vtk_names(tmp_path / 'old')
+    cable_sim(BREAKING, '--duration', '0.1', '--rate', '50', '--vtk', 'old')
+    assert vtk_names(tmp_path / 'old') == sorted(vtk_names(tmp_path / 'new') + ['notes.txt'])
+    bare = dict(BREAKING, bodies=[], obstacles=[])
+    cable_sim(bare, '--duration', '0.1', '--rate', '50', '--vtk', 'old')
+    assert vtk_names(tmp_path / 'old') == [name for name in vtk_names(tmp_path / 'new') if name.startswith('cables')] + ['notes.txt']
+
+
+@pytest.mark.parametrize('output', ['v', 'v/', 'v/../v', 'v/cables.pvd', 'v/bodies_0003.vtp'])
+def test_what_vtk_writes_is_nothing_else(tmp_path, output):
+    (tmp_path / 'scene.yaml').write_text(json.dumps(BREAKING))
+    for makes in (False, True):
+        if makes:
+            (tmp_path / 'v').mkdir()
+        command = [str(DEVEL / 'lib/verlet_cable/cable_sim'), 'scene.yaml', '--duration', '0.01', '--vtk', 'v', '--output', output]
+        done = subprocess.run(command, cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        assert done.returncode == 2 and 'cable_sim: --output: ' in done.stderr, done.stderr
+        if output in ('v/cables.pvd', 'v/bodies_0003.vtp') and makes:
+            assert f'--output: "{output}" is what --vtk "v" writes; allowed: another file' in done.stderr
+    assert list((tmp_path / 'v').iterdir()) == []
 
 
 def test_vtk_has_the_rows_of_the_output(exported):

@@ -118,6 +118,83 @@ def test_foreign_bytes_are_refused():
             World.load(scene, bad)
     with pytest.raises(ValueError, match='data: it is of a scene with cables hose.*this one has cables rope'):
         World.load(Scene.from_dict(rope), data)
+    with pytest.raises(TypeError, match="data: 'text'; allowed: bytes, as save"):
+        World.load(scene, 'text')
+    for as_bytes in (bytearray(data), memoryview(data), numpy.frombuffer(data, numpy.uint8)):
+        assert World.load(scene, as_bytes).state_hash == world.state_hash
+
+
+def changed(**keys):
+    """HOSE with other keys, those of its cable after cable_."""
+    cable = {key[len('cable_'):]: value for key, value in keys.items() if key.startswith('cable_')}
+    others = {key: value for key, value in keys.items() if not key.startswith('cable_')}
+    return Scene.from_dict({**HOSE, **others, 'cables': [{**HOSE['cables'][0], **cable}]})
+
+
+LEFT, RIGHT = HOSE['cables'][0]['attachments']
+
+
+@pytest.mark.parametrize('other, words', [
+    (dict(cable_segments=21), 'cables hose of 20 segments of m.*cables hose of 21 segments of m'),
+    (dict(cable_segments=1, cable_attachments=[]), 'cables hose of 20 segments of m.*this one has .*cables hose of 1 segment of m'),
+    (dict(cable_sections=[{'from': 0, 'to': 0.5, 'material': 'm'}]), 'this one has cables hose of 20 segments of m and m'),
+    (dict(cable_attachments=[LEFT]), r'attachments left \(hinge on world\), right \(hinge on hand\).*this one has .*attachments left'),
+    (dict(cable_attachments=[dict(LEFT, type='clamp'), RIGHT]), r'this one has attachments left \(clamp on world\), right'),
+    (dict(cable_attachments=[LEFT, dict(RIGHT, frame='grip')]), 'frames world, hand.*this one has frames world, grip'),
+    (dict(obstacles=[]), r'obstacles floor \(plane in world\), and this one has obstacles none'),
+    (dict(obstacles=[{'name': 'floor', 'type': 'sphere', 'radius': 0.01, 'pose': [0, 0, -2, 0, 0, 0]}]), r'floor \(sphere in world\)'),
+    (dict(particles=[{'name': 'p', 'mass': 1.0, 'position': [0, 0, 5]}]), 'particles none, and this one has particles p'),
+    (dict(nets=[{'name': 'f', 'mass': 1.0, 'grid': {'rows': 2, 'columns': 3, 'spacing': 0.1, 'origin': [0, 0, 5]}}]),
+     r'this one has nets f \(2 x 3 nodes; spring\)'),
+    (dict(time_step=0.002), 'time_step 0.001 s, and this one has time_step 0.002 s'),
+    (dict(frame_id='map'), 'frames world.*this one has frames map'),
+    (dict(bodies=[{'name': 'b', 'mass': 1.0, 'shapes': [{'type': 'sphere', 'radius': 0.1}], 'pose': [0, 0, 5, 0, 0, 0]}]),
+     r'bodies none.*this one has bodies b \(sphere\)'),
+    (dict(guides=[{'name': 'g', 'cable': 'hose', 'type': 'clip', 'offset': [0, 0, 5], 'capture': 0.01}]),
+     r'guides g \(clip for hose on world\)'),
+], ids=lambda value: value[:30] if isinstance(value, str) else '')
+def test_worlds_of_other_scenes_are_refused(other, words):
+    world, scene = begun(HOSE), changed(**other)
+    with pytest.raises(ValueError, match='data: it is of a scene with .*' + words):
+        World.load(scene, world.save())
+    batch = Batch(scene, 2)
+    before = batch.state_hash
+    with pytest.raises(ValueError, match='world.*; allowed: scenes that differ in numbers only'):
+        batch.set_world(0, world)
+    assert batch.state_hash == before
+
+
+def test_what_differs_in_numbers_or_by_edits_is_loaded():
+    world = begun(HOSE)
+    world.cut('hose', node=15)
+    world.set_length('hose', False, 0.5, 1.0)
+    world.step(300)
+    assert len(world.positions('hose')) != 16
+    softer = changed(materials={'m': dict(HOSE['materials']['m'], bending_stiffness=0.002)}, gravity=[0, 0, -1], cable_length=1.1)
+    assert World.load(softer, world.save()).state_hash == world.state_hash
+
+
+@pytest.mark.parametrize('protocol', range(pickle.HIGHEST_PROTOCOL + 1))
+def test_any_protocol_pickles(protocol):
+    scene = Scene.from_dict(HOSE)
+    world = begun(HOSE)
+    assert pickle.loads(pickle.dumps(scene, protocol)).cable_names == ['hose']
+    assert pickle.loads(pickle.dumps(world, protocol)).state_hash == world.state_hash
+    batch = Batch(world, 2)
+    assert pickle.loads(pickle.dumps(batch, protocol)).state_hash == batch.state_hash
+    with pytest.raises(TypeError, match='cannot pickle'):
+        pickle.dumps(batch.worlds, protocol)
+
+
+def test_contacts_are_in_it():
+    world = begun(HOSE)
+    while not len(world.contacts()):
+        world.step(5)
+    assert world.contact_force('floor')[2] < 0
+    batch = Batch(world, 2)
+    for other in [*forms(world, Scene.from_dict(HOSE)), pickle.loads(pickle.dumps(batch)).world(1)]:
+        assert numpy.array_equal(other.contacts(), world.contacts())
+        assert numpy.array_equal(other.contact_force('floor'), world.contact_force('floor'))
 
 
 def test_a_state_is_set_within_lengths_and_holders():
@@ -128,7 +205,7 @@ def test_a_state_is_set_within_lengths_and_holders():
     assert numpy.allclose(world.positions('hose'), other.positions('hose'), atol=1e-9)
     assert numpy.allclose(world.velocities('hose'), other.velocities('hose'), atol=1e-6)
     # A heap of nodes, drawn to one side.
-    shape = numpy.linspace([0, 0.3, 0], [0.7, 0.3, 0.3], 21)
+    shape = numpy.linspace([0, 0.3, 0], [0.9, 0.3, 0.38], 21)
     world.set_state('hose', positions=shape, velocities=numpy.ones((21, 3)))
     lengths = numpy.linalg.norm(numpy.diff(world.positions('hose'), axis=0), axis=1)
     assert numpy.allclose(lengths, 0.05, rtol=1e-6)
@@ -136,6 +213,22 @@ def test_a_state_is_set_within_lengths_and_holders():
     along = numpy.diff(world.positions('hose'), axis=0) * numpy.diff(world.velocities('hose'), axis=0)
     assert abs(along.sum(axis=1)).max() < 1e-9
     assert world.step(500) == 'ok'
+
+
+def test_a_strained_cable_takes_the_lengths_that_it_has():
+    """A rope of 10 N, drawn to twice its length."""
+    shape = numpy.linspace([0, 0, 0], [2, 0, 0], 21)
+    elastic = dict(HOSE, materials={'m': dict(HOSE['materials']['m'], axial_stiffness=10.0)})
+    world = world_of(elastic)
+    with pytest.raises(ValueError, match="positions: a polyline of 2 m; allowed: at most 5 % more or less than the cable's length 1 m"):
+        world.set_state('hose', positions=shape)
+    for step in range(300):
+        world.set_frame('hand', [0.7 + 1.3 * (step + 1) / 300, 0, 0], IDENTITY)
+        world.step()
+    world.set_state('hose', positions=world.positions('hose'))
+    world.set_state('hose', positions=shape)
+    with pytest.raises(ValueError, match="than the cable's length 1 m, or than the 2 m to which it is strained"):
+        world.set_state('hose', positions=1.2 * shape)
 
 
 @pytest.mark.parametrize('kind', [{}, {'torsional_stiffness': 0.008, 'bending_stiffness': [0.01, 0.02]}, {'axial_stiffness': 1e4}])
@@ -162,6 +255,14 @@ def test_a_state_that_cannot_be_is_refused():
                              (dict(velocities=numpy.zeros((3, 3)), positions=numpy.zeros((4, 3))), '(?s)positions: 4.*velocities: 3')]:
         with pytest.raises(ValueError, match=words):
             world.set_state('hose', **arguments)
+    # As a scene refuses it.
+    for length in (2.0, 0.9):
+        shape = numpy.linspace([0, 0, 0], [0, 0, length], 21)
+        words = rf"positions: a polyline of {length:g} m; allowed: at most 5 % more or less than the cable's length 1 m"
+        with pytest.raises(ValueError, match=words):
+            world.set_state('hose', positions=shape)
+        with pytest.raises(ValueError, match=words.replace('positions', 'points')):
+            changed(cable_attachments=[], cable_initial={'type': 'points', 'points': shape.tolist()})
     with pytest.raises(KeyError, match='rope'):
         world.set_state('rope', positions=numpy.zeros((21, 3)))
     assert world.state_hash == before

@@ -5,7 +5,7 @@ from fractions import Fraction
 import numpy
 import pytest
 
-from verlet_cable.sim import Batch, Scene, World
+from verlet_cable.sim import Batch, Scene, SceneError, World
 from worlds import IDENTITY, world_of
 
 
@@ -80,3 +80,8 @@ def test_an_offset_needs_no_rotation(hang):
     assert with_rotation.state_hash == without.state_hash
     with pytest.raises(ValueError, match=re.escape('offset: shape (4,); allowed: (7,), or (3,) without rotation')):
         without.pin('hose', node=5, offset=[0, 0, 0, 1])
+
+
+def test_a_scene_without_a_path_is_refused_as_one_that_is_not_there():
+    with pytest.raises(SceneError, match='scene: cannot read ""'):
+        Scene.load('')

@@ -288,11 +288,11 @@ class World {
   /// All joints of a cable from start to end: those of inner nodes, and those between clamps and the segments next to them.
   void view_joints(int cable, std::vector<JointView>& joints) const;
   std::uint64_t hash() const;  ///< of everything that the future depends on
-  /// Everything that the future depends on, as bytes: for this version of the package on this kind of machine.
+  /// Everything that the future depends on, and contacts, as bytes: for this version of the package on this kind of machine.
   std::string save() const;
-  /// Goes on from what `save` gave of a world whose scene differs from this one's in numbers only, as a copy of that world would,
-  /// with no findings until the next step. Throws std::invalid_argument with what is wrong with the bytes; the world is then as
-  /// before.
+  /// Goes on from what `save` gave of a world whose scene differs from this one's in numbers only, as a copy of that world would.
+  /// Findings but contacts come with the next step. Throws std::invalid_argument with what is wrong with the bytes; the world is
+  /// then as before.
   void restore(const std::string& bytes);
 
  private:

@@ -7,6 +7,7 @@
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "scene/polyline_length.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -267,6 +268,11 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
     check_nodes("positions", of.positions, cable.state, problems);
     check_nodes("velocities", of.velocities, cable.state, problems);
     if (!problems.text().empty()) return refuse(problems.text());
+    if (of.positions) {
+      Errors errors;
+      check_polyline_length("positions", *of.positions, cable.state.length(), polyline_length(cable.state.positions), errors);
+      if (errors.size() > 0) return refuse(errors.take().front());
+    }
     if (of.positions && !put_at(*of.positions, of.cable, state))
       return refuse("positions: no shape near them has the cable's lengths where its holders are");
     if (of.velocities) cable.state.velocities = *of.velocities;

@@ -3,6 +3,7 @@
 #include <map>
 #include <numeric>
 
+#include "scene/polyline_length.h"
 #include "scene/scene_errors.h"
 #include "scene/scene_materials.h"
 #include "scene/scene_size.h"
@@ -26,7 +27,6 @@ constexpr double distance_tolerance = 1e-9;
 constexpr double held_tolerance = 1e-4;
 /// [rad] from one segment to the next, at rest
 constexpr double largest_rest_turn = 0.5 * M_PI;
-constexpr double largest_length_error = 0.05;
 
 /// `joints`: how many places of the cable are in junctions or guides.
 void check_initial(const std::string& key, const CableDesc& cable, int joints, Errors& errors) {
@@ -51,11 +51,7 @@ void check_initial(const std::string& key, const CableDesc& cable, int joints, E
                "none, or one for each point: " + std::to_string(initial.points.size()));
   if (initial.points.size() < 2)
     return errors.add(key + ".points", std::to_string(initial.points.size()) + " points", "at least two points");
-  double length = 0;
-  for (std::size_t i = 1; i < initial.points.size(); ++i) length += (initial.points[i] - initial.points[i - 1]).norm();
-  if (std::isfinite(length) && has_sound_size(cable) && std::abs(length - cable.length) > largest_length_error * cable.length)
-    errors.add(key + ".points", "a polyline of " + rounded_text(length) + " m",
-               "at most 5 % more or less than the cable's length " + number_text(cable.length) + " m");
+  if (has_sound_size(cable)) check_polyline_length(key + ".points", initial.points, cable.length, cable.length, errors);
 }
 
 void check_attachments(const std::string& prefix, const CableDesc& cable, const SceneNames& scene_names, UniqueNames& names,

@@ -114,22 +114,48 @@ std::vector<Mesh> meshes_of(const State& state) {
   return meshes;
 }
 
+/// Whether what a contact names is there, and its vectors are finite. `by_body`: what is touched, a body touches, and no cable.
+bool is_sound(const SimulatedContact& contact, bool by_body, const State& state) {
+  const auto is_one = [](int index, std::size_t count) { return index >= -1 && index < static_cast<int>(count); };
+  const auto is_segment = [&](int cable, int segment) {
+    return is_one(cable, state.cables.size()) && (cable < 0 || (segment >= 0 && segment < state.cables[cable].state.segments()));
+  };
+  const bool is_touched = contact.obstacle >= 0 || (!by_body && (contact.other_cable >= 0 || contact.body >= 0));
+  return (by_body ? contact.body >= 0 && contact.cable < 0 : contact.cable >= 0) && is_touched &&
+         is_segment(contact.cable, contact.segment) && is_segment(contact.other_cable, contact.other_segment) &&
+         is_one(contact.obstacle, state.obstacles.size()) && is_one(contact.body, state.bodies.size()) &&
+         contact.position.allFinite() && contact.normal.allFinite() && contact.force.allFinite() && contact.torque.allFinite();
+}
+
 }  // namespace
 
-std::string bytes_of(const State& state) {
+std::string bytes_of(const State& state, const Findings& findings) {
   ByteWriter bytes;
   bytes(hash(state));
+  visit(findings.contacts, bytes);
+  visit(findings.body_contacts, bytes);
   visit(state, bytes);
   return bytes.take();
 }
 
-void restore(std::string_view text, State& state) {
+void restore(std::string_view text, State& state, Findings& findings) {
   ByteReader bytes(text);
   std::uint64_t expected = 0;
   bytes(expected);
-  StateReader(bytes, meshes_of(state)).read(state);
+  StateReader reader(bytes, meshes_of(state));
+  findings = {};
+  reader.read(findings.contacts);
+  reader.read(findings.body_contacts);
+  reader.read(state);
   if (!bytes.is_at_end()) throw std::invalid_argument("there are more than a state has");
   if (hash(state) != expected) throw std::invalid_argument("they are damaged, or of another version");
+  // The hash does not cover them.
+  for (auto* contacts : {&findings.contacts, &findings.body_contacts}) {
+    const auto is_wrong = [&](const SimulatedContact& contact) {
+      return !is_sound(contact, contacts == &findings.body_contacts, state);
+    };
+    contacts->erase(std::remove_if(contacts->begin(), contacts->end(), is_wrong), contacts->end());
+  }
 }
 
 std::string numbers_of(const SceneDesc& scene) {

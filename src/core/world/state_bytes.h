@@ -3,15 +3,17 @@
 #include <string>
 #include <string_view>
 
+#include "verlet_cable/core/world.h"
 #include "world/state.h"
 
 namespace verlet_cable {
 
-/// All that the future depends on, after its hash.
-std::string bytes_of(const State& state);
+/// All that the future depends on, after its hash, and the contacts of the last step.
+std::string bytes_of(const State& state, const Findings& findings);
 
 /// Makes `state`, which is that of a world with the same scene as the bytes are of, what `bytes_of` had. Meshes that it has are
-/// kept. Throws std::invalid_argument with what is wrong with the bytes; the state is then of no use.
-void restore(std::string_view bytes, State& state);
+/// kept; `findings` has contacts, and nothing else. Throws std::invalid_argument with what is wrong with the bytes; both are then
+/// of no use.
+void restore(std::string_view bytes, State& state, Findings& findings);
 
 }  // namespace verlet_cable

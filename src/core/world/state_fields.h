@@ -4,6 +4,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "verlet_cable/core/contact.h"
 #include "world/state.h"
 
 namespace verlet_cable {
@@ -175,6 +176,12 @@ auto fields(T& x, const LengthDrive*) {
 template <class T>
 auto fields(T& x, const CachedContact*) {
   return std::tie(x.key, x.other_key, x.force, x.normal_force, x.mode, x.inside, x.inside_for);
+}
+/// No part of the state, but of what is saved with it.
+template <class T>
+auto fields(T& x, const SimulatedContact*) {
+  return std::tie(x.cable, x.segment, x.position, x.normal, x.force, x.obstacle, x.other_cable, x.other_segment, x.body, x.torque,
+                  x.length, x.other_length);
 }
 template <class T>
 auto fields(T& x, const CableProgress*) {

@@ -147,13 +147,12 @@ std::uint64_t World::hash() const {
 }
 
 std::string World::save() const {
-  return bytes_of(implementation_->state);
+  return bytes_of(implementation_->state, findings());
 }
 
 void World::restore(const std::string& bytes) {
   auto next = std::make_unique<Implementation>(*implementation_);
-  verlet_cable::restore(bytes, next->state);
-  next->findings = {};
+  verlet_cable::restore(bytes, next->state, next->findings);
   next->told_unsettled = 0;
   next->name_waiting();
   implementation_ = std::move(next);

@@ -15,6 +15,7 @@
 #include "binding/batch_arrays.h"
 #include "binding/drawings.h"
 #include "binding/motion_argument.h"
+#include "binding/pickle_protocol.h"
 #include "binding/text_arguments.h"
 #include "simulation/edits.h"
 
@@ -249,8 +250,9 @@ BatchClass add_batch_class(py::module_& module) {
            "`count` worlds of a scene. motion, loads: as for World, the same for all. threads: 0 is one per core.")
       .def(py::init(&make_from_list), py::arg("scenes"), py::arg("motion") = py::none(), py::arg("threads") = 0,
            py::arg("loads") = py::none(), py::kw_only(), py::arg("keep_going").noconvert() = false,
-           "A world for each scene of a list. The scenes may differ only in numbers: their names, numbers of segments and time "
-           "steps must be the same. keep_going: a scene that does not fit, or cannot start, is not an error, but is named in "
+           "A world for each scene of a list. The scenes may differ only in numbers: their names, types, numbers of segments "
+           "and time steps must be the same. keep_going: a scene that does not fit, or cannot start, is not an error, but is "
+           "named in "
            "`errors`. Its world is a copy of the first one without error that is never stepped, with status 6, until set_world "
            "replaces it. SceneError is raised if no scene is right.")
       .def(py::init(&make_of_world), py::arg("world"), py::arg("count"), py::arg("threads") = 0,
@@ -276,8 +278,9 @@ BatchClass add_batch_class(py::module_& module) {
            "give all a common start. index: an integer (negative ones count from the end), a sequence of integers, or a bool "
            "mask (count,). A copy takes less time than a step, however long it took to make the world. The records of the last "
            "step are dropped; `status` of these worlds is 0.\n\nRaises IndexError; ValueError for another kind of index, or if "
-           "the scene of the world differs from that of the batch in more than numbers: names, numbers of segments and time step "
-           "must be the same. Then nothing is changed.")
+           "the scene of the world differs from that of the batch in more than numbers: names, types, numbers of segments and "
+           "time "
+           "step must be the same. Then nothing is changed.")
       .def("set_material", set_material, py::arg("name"),
            "Changes keys of a material, such as linear_density=... or bending_stiffness=...; the values are a number, or "
            "(count,), or for bending_stiffness (count, 2). Worlds that were not yet stepped, settled or edited are started anew "
@@ -309,6 +312,7 @@ BatchClass add_batch_class(py::module_& module) {
       .def(
           "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
       .def(py::pickle(&pickled, &unpickled))
+      .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
       .def("positions", read<Quantity::positions>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "binding/batch_arguments.h"
+#include "binding/pickle_protocol.h"
 
 namespace verlet_cable {
 namespace {
@@ -28,6 +29,7 @@ void add_worlds_class(py::module_& module) {
       "The worlds of a batch, in their order: Batch.worlds. Each is a World that is not a copy: what is done "
       "to it is done to the batch, and it is what the batch has made of it. An integer is the index of one, "
       "from the end where it is negative.")
+      .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def("__len__", [](const WorldsOfBatch& worlds) { return worlds.batch->batch.size(); })
       .def("__getitem__", world_at, py::arg("index"), "Raises IndexError.")
       .def("__iter__", [](const WorldsOfBatch& worlds) { return py::iter(all_of(worlds)); })

@@ -320,7 +320,8 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       "qw of a body that only cables hold, and (6,) [m/s], [rad/s] as body_twist(). Its cables go with it; what of the velocity "
       "they do not allow, the next step takes away.\narc_length: [m] at rest from the start of the cable to what is in a guide; "
       "material goes through it, and nodes with it.\n\nRaises ValueError, also where no shape near the positions has the "
-      "cable's lengths, and KeyError; then nothing is changed.");
+      "cable's lengths, or the polyline through them is more than 5 % off the cable's length at rest and as it is strained now, "
+      "and KeyError; then nothing is changed.");
   methods.add_edit(
       "set_states", [](PythonWorld& self, const py::dict& states) { set_states(read_states(states), self.driven()); },
       py::arg("states"),

@@ -4,9 +4,11 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
+#include "binding/pickle_protocol.h"
 #include "binding/text_arguments.h"
 #include "binding/yaml_of.h"
 #include "verlet_cable/core/name_list.h"
@@ -33,7 +35,8 @@ PythonScene scene_of(const std::string& directory, const Reader& read) {
 
 PythonScene load(const py::object& path) {
   const std::string file = path_of(path, "path");
-  const FileAccess beside{true, std::filesystem::absolute(file).parent_path().string()};
+  std::error_code error;  // of an empty name, which cannot be read below
+  const FileAccess beside{true, std::filesystem::absolute(file, error).parent_path().string()};
   return scene_of(beside.directory, [&](std::string& text) {
     text = scene_file_text(file);
     return read_scene_text(text, {beside, {}});
@@ -107,7 +110,11 @@ PythonScene scene_of_parts(const py::tuple& parts) {
 }
 
 void add_scene_class(py::module_& module) {
-  py::class_<PythonScene>(module, "Scene", "A scene that has been read and validated. It is immutable; worlds are made from it.")
+  py::class_<PythonScene>(
+      module, "Scene",
+      "A scene that has been read and validated. It is immutable; worlds are made from it. A pickle, also of a "
+      "world or batch, has its text and the path of its directory, from which meshes and a robot "
+      "are read again where it is loaded: on another machine they must be there, too.")
       .def(py::init([](const py::object&) -> PythonScene {
              throw py::type_error(
                  "Scene is not made by calling it; allowed: Scene.load(path) for a file, Scene.from_yaml(text), "
@@ -115,6 +122,7 @@ void add_scene_class(py::module_& module) {
            }),
            py::arg("path") = py::none(), "Not for use: load, from_yaml and from_dict make scenes.")
       .def(py::pickle(&parts_of, &scene_of_parts))
+      .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def("__copy__", [](const PythonScene& scene) { return scene; })
       .def(
           "__deepcopy__", [](const PythonScene& scene, const py::dict&) { return scene; }, py::arg("memo"))

@@ -15,6 +15,7 @@
 #include "binding/drawings.h"
 #include "binding/edit_methods.h"
 #include "binding/motion_argument.h"
+#include "binding/pickle_protocol.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
 #include "binding/text_arguments.h"
@@ -64,8 +65,10 @@ py::bytes saved(PythonWorld& world) {
   return world.driven().save();
 }
 
-std::unique_ptr<PythonWorld> load(const PythonScene& scene, const py::bytes& data) {
-  const std::string bytes = data;
+std::unique_ptr<PythonWorld> load(const PythonScene& scene, const py::buffer& data) {
+  const auto copied = py::reinterpret_steal<py::bytes>(PyBytes_FromObject(data.ptr()));
+  if (!copied) throw py::error_already_set();
+  const std::string bytes = copied;
   const py::gil_scoped_release release;
   return own_world(scene, DrivenWorld::load(*scene.desc, bytes));
 }
@@ -198,10 +201,13 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
       .def("__repr__", represent)
       .def_static("load", load, py::arg("scene"), py::arg("data"),
                   "The world of which save() returned the bytes `data`, or the service save_state wrote them to a file: there, "
-                  "frames then rest. `scene` may differ from its scene in numbers, which are those that it had.\n\nRaises "
-                  "ValueError that says what is wrong with the bytes.")
+                  "frames then rest. `scene` may differ from its scene in numbers, such as materials, lengths and poses: cables, "
+                  "nets and the "
+                  "materials then have those of the bytes. Names, types, numbers of segments, and the time step must be the "
+                  "same.\n\nRaises ValueError that says what is wrong with the bytes, or how the scenes differ.")
       .def(py::pickle([](PythonWorld& world) { return py::make_tuple(parts_of(world.scene()), saved(world)); },
                       [](const py::tuple& parts) { return load(scene_of_parts(parts[0]), py::bytes(parts[1])); }))
+      .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def_property_readonly(
           "scene", [](PythonWorld& world) { return world.scene(); },
           "The scene that the world was made of, without what tune() has changed.")

@@ -70,7 +70,13 @@ DrivenWorld::DrivenWorld(WorldFile file)
 }
 
 DrivenWorld DrivenWorld::load(const SceneDesc& scene, const std::string& data) {
-  return DrivenWorld(read_world(scene, data));
+  WorldFile file = read_world(scene, data);
+  try {
+    return DrivenWorld(std::move(file));
+  } catch (const std::invalid_argument& error) {
+    throw std::invalid_argument("data: what moves its frames: " + std::string(error.what()) +
+                                "; allowed: what a world with such a scene has saved");
+  }
 }
 
 std::string DrivenWorld::save() const {
@@ -106,6 +112,10 @@ void DrivenWorld::read_frames(const std::string& frames) {
     bytes(given.frame);
     const std::size_t count = bytes.read_length();
     for (std::size_t k = 0; k < count; ++k) given.poses.push_back(read_pose(bytes));
+    const auto is_one_of = [&](const BoundaryInputs& inputs) {
+      return given.frame >= 0 && static_cast<std::size_t>(given.frame) < inputs.size();
+    };
+    if (count == 0 || !is_one_of(inputs_) || !is_one_of(targets_)) throw std::invalid_argument("a pose is of no frame");
   }
 }
 

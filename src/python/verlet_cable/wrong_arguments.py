@@ -13,8 +13,9 @@ _NO_DEFAULT = object()
 
 _MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"[^"\n]*; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
 
-_WORDS = {'str': 'text', 'bytes': 'bytes, as save() returns them',
-          'Dict[str, Dict[str, numpy.ndarray[numpy.float64]]]': "a dict of dicts of numbers, such as {'my_hose': {'drag': 0.1}}", 'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
+_WORDS = {'str': 'text', 'bytes': 'bytes, as save() returns them', 'buffer': 'bytes, as save() returns them',
+          'Dict[str, Dict[str, numpy.ndarray[numpy.float64]]]': "a dict of dicts of numbers, such as {'my_hose': {'drag': 0.1}}",
+          'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
           'numpy.ndarray[numpy.float64]': 'numbers that are real, as an array or nested sequences'}
 
 # By the type that is asked for and the one that was given: what makes the one of the other.
@@ -125,6 +126,8 @@ def _fits(kind, value):
         return _succeeds(operator.index, value)
     if kind == 'float':
         return not isinstance(value, str) and _succeeds(float, value)
+    if kind == 'buffer':
+        return _succeeds(memoryview, value)
     if kind.startswith('numpy.ndarray'):
         return _are_numbers(value)
     known = _class(kind.rpartition('.')[2])

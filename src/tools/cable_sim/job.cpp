@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
+#include <system_error>
 
 #include "common/messages.h"
 #include "common/output_file.h"
@@ -22,6 +24,18 @@ constexpr double most_steps = 1e12;
 
 void append(const std::string& prefix, const std::vector<std::string>& lines, std::vector<std::string>& errors) {
   for (const std::string& line : lines) errors.push_back(prefix + ": " + line);
+}
+
+/// Whether a file would be the directory itself, or one of those that are written into it.
+bool is_of_directory(const std::string& path, const std::string& directory) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  const auto resolved = [&](const std::string& name) {
+    const fs::path whole = fs::weakly_canonical(name, error);
+    return whole.has_filename() ? whole : whole.parent_path();
+  };
+  const fs::path file = resolved(path), folder = resolved(directory);
+  return !error && (file == folder || (file.parent_path() == folder && is_vtk_name(file.filename().string())));
 }
 
 /// `scene_files`: those that the scene names.
@@ -48,6 +62,9 @@ void check_outputs(const Options& options, const std::vector<std::string>& scene
     if (output.path.empty()) continue;
     const std::string problem = tools::why_not_writable(output.path);
     if (!problem.empty()) errors.push_back(std::string(output.option) + ": " + tools::cannot_write(output.path, problem));
+    if (problem.empty() && !options.vtk.empty() && is_of_directory(output.path, options.vtk))
+      errors.push_back(std::string(output.option) + ": " + tools::quoted_path(output.path) + " is what --vtk " +
+                       tools::quoted_path(options.vtk) + " writes; allowed: another file");
     for (const Other& other : others) {
       if (&other.path == &output.path) break;  // what comes later is compared with this
       if (other.path.empty() || !tools::is_same_file(output.path, other.path)) continue;

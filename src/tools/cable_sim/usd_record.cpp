@@ -113,14 +113,17 @@ std::string shape_text(const std::string& name, const Shape& shape, const Pose& 
   return text + indent + "}\n";
 }
 
-/// The widths of a cable: one where it is as thick everywhere, else one a node.
-std::string widths_of(const SimulatedCable& cable, bool& is_uniform) {
+std::string numbers_text(const std::vector<double>& numbers) {
+  return list(numbers, [](double number) { return number_text(number); });
+}
+
+/// At each node.
+std::vector<double> widths_of(const SimulatedCable& cable) {
   const CableMaterials materials(cable);
   const auto radius = [](const MaterialDesc& material) { return material.radius; };
-  is_uniform = materials.smallest(radius) == materials.largest(radius);
-  std::vector<double> widths(is_uniform ? 1 : cable.state.nodes());
+  std::vector<double> widths(cable.state.nodes());
   for (std::size_t node = 0; node < widths.size(); ++node) widths[node] = 2 * materials.mean_at(static_cast<int>(node), radius);
-  return list(widths, [](double width) { return number_text(width); });
+  return widths;
 }
 
 }  // namespace
@@ -173,17 +176,20 @@ UsdRecord::Prim& UsdRecord::prim_at(Folder& folder, const std::string& key, cons
 }
 
 void UsdRecord::add_curves(const std::string& key, const std::string& name, const std::array<double, 4>& color,
-                           const std::string& counts, const std::string& points, const std::string& widths, bool is_uniform) {
+                           const std::string& counts, const std::vector<Vector3>& points, const std::vector<double>& widths) {
   Prim& prim = prim_at(cables_, key, "BasisCurves", name);
   if (prim.constants.empty()) {
     const std::string indent(12, ' ');
     prim.constants = indent + "uniform token type = \"linear\"\n" + indent + "uniform token wrap = \"nonperiodic\"\n" +
                      color_text(indent, color);
-    prim.metadata["float[] widths"] = std::string("interpolation = \"") + (is_uniform ? "constant" : "vertex") + "\"";
   }
   prim.attributes["int[] curveVertexCounts"].add(time_code_, counts);
-  prim.attributes["point3f[] points"].add(time_code_, points);
-  prim.attributes["float[] widths"].add(time_code_, widths);
+  prim.attributes["point3f[] points"].add(time_code_, points_text(points));
+  // Interpolation does not change over time, and where it is that of vertices, each has a width at all times.
+  const auto differs = [&](double width) { return width != widths.front(); };
+  prim.has_one_width = prim.has_one_width && std::none_of(widths.begin(), widths.end(), differs);
+  prim.width.add(time_code_, numbers_text({widths.front()}));
+  prim.widths.add(time_code_, numbers_text(widths));
 }
 
 void UsdRecord::add_solid(Folder& folder, const std::string& key, const std::string& name, const Pose& pose,
@@ -204,19 +210,16 @@ void UsdRecord::add(const World& world) {
   time_code_ = number_text(std::abs(code - whole) < code_tolerance ? whole : code);
   if (first_code_.empty()) first_code_ = time_code_;
   for (const SimulatedCable& cable : world.cables()) {
-    bool is_uniform = true;
-    const std::string widths = widths_of(cable, is_uniform);
     const std::string& name = cable.model->name;
-    add_curves("cable " + name, name, cable.model->color, "[" + std::to_string(cable.state.nodes()) + "]",
-               points_text(cable.state.positions), widths, is_uniform);
+    add_curves("cable " + name, name, cable.model->color, "[" + std::to_string(cable.state.nodes()) + "]", cable.state.positions,
+               widths_of(cable));
   }
   for (const SimulatedNet& net : world.nets()) {
     std::vector<Vector3> ends;
     for (const auto& link : net.model.links)
       for (const int node : link) ends.push_back(net.state.positions[node]);
     const std::string counts = list(net.model.links, [](const auto&) { return "2"; });
-    add_curves("net " + net.model.name, net.model.name, net.model.color, counts, points_text(ends),
-               "[" + number_text(width_of_net) + "]", true);
+    add_curves("net " + net.model.name, net.model.name, net.model.color, counts, ends, {width_of_net});
   }
   const std::string indent(12, ' ');
   for (const SimulatedParticle& particle : world.particles()) {
@@ -261,10 +264,11 @@ std::string UsdRecord::text_of(const std::string& folder_name, const Folder& fol
     text += indent + "def " + prim.type + " \"" + folder.identifiers[k] + "\" (\n" + inner + "customData = {\n" + inner +
             "    string name = " + usd_string(prim.name) + "\n" + inner + "}\n" + indent + ")\n" + indent + "{\n";
     text += prim.constants;
-    for (const auto& [declaration, samples] : prim.attributes) {
-      const auto metadata = prim.metadata.find(declaration);
-      text += samples.statement(inner, declaration, metadata == prim.metadata.end() ? "" : metadata->second);
-    }
+    if (prim.type == "BasisCurves")
+      text += (prim.has_one_width ? prim.width : prim.widths)
+                  .statement(inner, "float[] widths",
+                             std::string("interpolation = \"") + (prim.has_one_width ? "constant" : "vertex") + "\"");
+    for (const auto& [declaration, samples] : prim.attributes) text += samples.statement(inner, declaration);
     text += prim.visibility.statement(inner, "token visibility");
     text += prim.children + indent + "}\n";
   }

@@ -47,7 +47,9 @@ class UsdRecord {
     std::string constants;
     std::string children;
     std::map<std::string, UsdSamples> attributes;  ///< by declaration
-    std::map<std::string, std::string> metadata;   ///< likewise, of those that have any
+    /// Of curves: as thick as that everywhere, as long as they were so at all times; and at each point.
+    UsdSamples width, widths;
+    bool has_one_width = true;
     UsdSamples visibility;
   };
   struct Folder {
@@ -59,8 +61,9 @@ class UsdRecord {
   };
 
   Prim& prim_at(Folder& folder, const std::string& key, const std::string& type, const std::string& name);
+  /// `widths` [m]: one a point, or one for all that never change.
   void add_curves(const std::string& key, const std::string& name, const std::array<double, 4>& color, const std::string& counts,
-                  const std::string& points, const std::string& widths, bool is_uniform);
+                  const std::vector<Vector3>& points, const std::vector<double>& widths);
   void add_solid(Folder& folder, const std::string& key, const std::string& name, const Pose& pose, const std::string& children);
   void end_time(Folder& folder);
   static std::string text_of(const std::string& folder_name, const Folder& folder);

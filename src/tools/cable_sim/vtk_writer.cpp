@@ -229,6 +229,17 @@ std::string cannot_write_directory(const std::string& path, const std::string& w
          "; allowed: a directory that can be written, or a new one in such a directory";
 }
 
+bool is_vtk_name(const std::string& name) {
+  for (const std::string series : {"cables", "bodies", "obstacles"}) {
+    if (name.compare(0, series.size(), series) != 0) continue;
+    const std::string rest = name.substr(series.size());
+    const std::size_t digits = rest.find_first_not_of("0123456789", 1);
+    if (rest == ".pvd" || (rest[0] == '_' && digits > 1 && digits != std::string::npos && rest.substr(digits) == ".vtp"))
+      return true;
+  }
+  return false;
+}
+
 VtkWriter::VtkWriter(const World& world, const std::string& directory) : directory_(directory), plane_reach_(plane_reach(world)) {
   constexpr mode_t everyone = 0777;
   if (mkdir(directory.c_str(), everyone) != 0 && errno != EEXIST) {
@@ -242,27 +253,41 @@ void VtkWriter::write(const std::string& name, const std::string& text) {
   if (problem_.empty()) problem_ = tools::write_file(directory_ + "/" + name, text);
 }
 
-void VtkWriter::add_file(const World& world, Series& series, const std::string& content) {
+bool VtkWriter::remove(const std::string& name) const {
+  return ::unlink((directory_ + "/" + name).c_str()) == 0;
+}
+
+void VtkWriter::add_file(const World& world, Series& series, const std::optional<std::string>& content) {
   const std::string name = numbered(series.name, times_);
-  write(name, content);
+  if (!content) {
+    remove(name);
+    return;
+  }
+  write(name, *content);
   if (problem_.empty())
     series.index += "<DataSet timestep=\"" + number_text(world.time()) + "\" part=\"0\" file=\"" + name + "\"/>\n";
 }
 
 void VtkWriter::add(const World& world) {
   if (!problem_.empty()) return;
+  const auto xml = [](const Solids& solids) { return solids.is_empty() ? std::nullopt : std::optional(solids.xml()); };
   add_file(world, cables_, curves_xml(world));
-  if (const Solids solids = bodies_of(world, plane_reach_); !solids.is_empty()) add_file(world, bodies_, solids.xml());
-  if (const Solids solids = obstacles_of(world, plane_reach_); !solids.is_empty()) add_file(world, obstacles_, solids.xml());
+  add_file(world, bodies_, xml(bodies_of(world, plane_reach_)));
+  add_file(world, obstacles_, xml(obstacles_of(world, plane_reach_)));
   ++times_;
 }
 
 void VtkWriter::finish() {
   // Also after an error: what is there can be shown.
   for (const Series* series : {&cables_, &bodies_, &obstacles_}) {
-    if (series->index.empty()) continue;
-    const std::string problem = tools::write_file(directory_ + "/" + series->name + ".pvd",
-                                                  file_xml("Collection", "<Collection>\n" + series->index + "</Collection>\n"));
+    for (std::size_t number = times_; remove(numbered(series->name, number));) ++number;
+    const std::string name = std::string(series->name) + ".pvd";
+    if (series->index.empty()) {
+      remove(name);
+      continue;
+    }
+    const std::string problem =
+        tools::write_file(directory_ + "/" + name, file_xml("Collection", "<Collection>\n" + series->index + "</Collection>\n"));
     if (problem_.empty()) problem_ = problem;
   }
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,12 @@ std::string why_no_directory(const std::string& path);
 /// An error for `why_no_directory`'s answer: with the path, and what is allowed.
 std::string cannot_write_directory(const std::string& path, const std::string& why);
 
+/// Whether a file of a name is one that a VtkWriter may write into its directory.
+bool is_vtk_name(const std::string& name);
+
 /// A run as files of VTK's XML format (polygonal data) in a directory: cables_NNNN.vtp for each time, likewise bodies and
-/// obstacles where there are any, and cables.pvd, bodies.pvd and obstacles.pvd, which say when each is.
+/// obstacles where there are any, and cables.pvd, bodies.pvd and obstacles.pvd, which say when each is. Those that an earlier run
+/// has left, and this one has not, are removed.
 class VtkWriter {
  public:
   /// Makes the directory if it is not there; then see `problem`.
@@ -33,7 +38,9 @@ class VtkWriter {
     std::string index{};  ///< the lines of its .pvd file
   };
 
-  void add_file(const World& world, Series& series, const std::string& content);
+  /// No content: there is nothing of that kind now.
+  void add_file(const World& world, Series& series, const std::optional<std::string>& content);
+  bool remove(const std::string& name) const;
   void write(const std::string& name, const std::string& text);
 
   std::string directory_;

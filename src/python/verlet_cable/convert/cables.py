@@ -13,6 +13,8 @@ DENSITY = 1000.0       # [kg/m^3] where the source has none: water's, which MuJo
 RADIUS = 0.005         # [m] likewise
 LEAST_LENGTH = 1e-9    # [m] of a segment
 MOST_NAME = 200        # letters
+MOST_POINTS = 100001   # of a cable: scenes have up to 100000 segments
+MOST_DEPTH = 100       # of elements in elements
 
 
 @dataclasses.dataclass
@@ -28,6 +30,7 @@ class Cable:
     color: Optional[Tuple[float, ...]] = None    # red, green, blue, alpha
     rest_curvature: str = 'straight'
     start: Optional[str] = None                  # hinge or clamp in the fixed frame
+    y_axis: Optional[np.ndarray] = None          # of the material at the start; None: any
 
 
 @dataclasses.dataclass
@@ -67,6 +70,9 @@ def _errors(cable):
     if len(cable.points) < 2:
         yield f'{cable.element}: {len(cable.points)} points; allowed: at least 2'
         return
+    if len(cable.points) > MOST_POINTS:
+        yield f'{cable.element}: {len(cable.points)} points; allowed: at most {MOST_POINTS}'
+        return
     if not np.isfinite(cable.points).all():
         yield f'{cable.element}: points that are not finite; allowed: finite numbers'
         return
@@ -101,8 +107,7 @@ def _cable_lines(cable, name, material):
     if cable.rest_curvature != 'straight':
         yield f'    rest_curvature: {cable.rest_curvature}'
     if cable.start:
-        x, y, z = steps[0]
-        rotation = [0, math.atan2(-z, math.hypot(x, y)), math.atan2(y, x)] if cable.start == 'clamp' else [0, 0, 0]
+        rotation = _rotation(steps[0], cable.y_axis) if cable.start == 'clamp' else [0, 0, 0]
         yield (f'    attachments: [{{name: {name}_start, at: start, type: {cable.start}, offset: {_numbers(cable.points[0])}, '
                f'rotation: {_numbers(rotation)}}}]')
     yield '    initial:'
@@ -110,6 +115,44 @@ def _cable_lines(cable, name, material):
     yield '      points:'
     for point in cable.points:
         yield f'        - {_numbers(point)}'
+
+
+def _rotation(along, y_axis):
+    """Roll, pitch, yaw of x along a vector; y is as near to the axis as it can be, None: level."""
+    x, y, z = along
+    pitch, yaw = math.atan2(-z, math.hypot(x, y)), math.atan2(y, x)
+    if y_axis is None:
+        return [0, pitch, yaw]
+    level = axis_matrix(2, yaw) @ axis_matrix(1, pitch)
+    return [math.atan2(y_axis @ level[:, 2], y_axis @ level[:, 1]), pitch, yaw]
+
+
+def axis_matrix(axis, angle):
+    """The rotation by an angle [rad] about x, y or z."""
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix = np.eye(3)
+    matrix[[i, j], [i, j]] = np.cos(angle)
+    matrix[i, j], matrix[j, i] = -np.sin(angle), np.sin(angle)
+    return matrix
+
+
+def quaternion_matrix(quaternion):
+    """Of w, x, y, z, normalized."""
+    norm = np.linalg.norm(quaternion)
+    if len(quaternion) != 4 or not norm > 0:
+        raise ValueError
+    w, x, y, z = quaternion / norm
+    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+
+
+def smallest_turn(direction):
+    """The matrix of the smallest rotation that takes x to a unit vector."""
+    x, y, z = direction
+    if x < -1 + 1e-12:
+        return np.diag([-1.0, -1.0, 1.0])
+    return quaternion_matrix(np.array([1 + x, 0, -z, y]))
 
 
 def _number(value):

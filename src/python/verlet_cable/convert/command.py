@@ -2,10 +2,12 @@
 import argparse
 import os
 import sys
+import warnings
 
 from .errors import ConvertError
 
 _BAD_INPUT, _STOPPED = 2, 3
+_MOST_BYTES = 100_000_000  # of a file
 
 
 def main(arguments=None):
@@ -34,7 +36,7 @@ def main(arguments=None):
         print(f'cable_convert: note: {note}', file=sys.stderr)
     segments = sum(len(cable.points) - 1 for cable in found.cables)
     count = len(found.cables)
-    print(f'{options.output}: {count} {"cable" if count == 1 else "cables"}, {segments} segments')
+    print(f'{options.output}: {count} {"cable" if count == 1 else "cables"}, {segments} {"segment" if segments == 1 else "segments"}')
     return 0
 
 
@@ -49,24 +51,35 @@ def convert(source, output):
     if os.path.splitext(output)[1] not in ('.yaml', '.yml'):
         raise ConvertError(f'OUT.yaml: {output!r}; allowed: a name that ends in .yaml or .yml')
     try:
-        with open(source, encoding='utf-8') as file:
-            content = file.read()
+        with open(source, 'rb') as file:
+            content = file.read(_MOST_BYTES + 1)
+        if len(content) > _MOST_BYTES:
+            raise ConvertError(f'more than {_MOST_BYTES} bytes; allowed: at most as many')
+        content = content.decode('utf-8-sig').replace('\r\n', '\n')
     except OSError as error:
         raise ConvertError(f'cannot read it: {error.strerror}; allowed: a file that can be read') from error
     except UnicodeDecodeError as error:
         raise ConvertError(f'byte {error.start}: no UTF-8; allowed: a text file') from error
+    import numpy
     from .cables import scene_text
-    found = readers[ending](content)
-    text = scene_text(found, os.path.basename(source))
-    _check(text)
+    try:
+        # Numbers that are too large are errors, of which it tells.
+        with numpy.errstate(all='ignore'):
+            found = readers[ending](content)
+            text = scene_text(found, os.path.basename(source))
+    except MemoryError as error:
+        raise ConvertError(f'{len(content)} letters, for which the memory does not suffice; allowed: a smaller file') from error
+    found.notes += _doubts(text)
     return text, found
 
 
-def _check(text):
-    """What scenes do not allow, by their own words."""
+def _doubts(text):
+    """What a scene allows and probably does not mean. What it does not allow is an error, by its own words."""
     from verlet_cable.sim import Scene, SceneError
     try:
-        Scene.from_yaml(text)
+        with warnings.catch_warnings():
+            warnings.simplefilter('ignore')
+            return Scene.from_yaml(text).warnings
     except SceneError as error:
         raise ConvertError(*error.errors) from error
 

@@ -4,14 +4,15 @@ import xml.etree.ElementTree
 
 import numpy as np
 
-from .cables import DENSITY, LEAST_LENGTH, Cable, Found
+from .cables import DENSITY, LEAST_LENGTH, MOST_DEPTH, MOST_POINTS, Cable, Found, axis_matrix, quaternion_matrix, smallest_turn
 from .errors import ConvertError
-from .usd_cables import axis_matrix, quaternion_matrix
 
 _PLUGIN = 'mujoco.elasticity.cable'
 _CURVE = ('s', 'cos(s)', 'sin(s)', '0')
 _HOLDS = {'free': None, 'ball': 'hinge', 'none': 'clamp'}
+_TIME_STEP = 0.002   # [s] of models that give none
 _LARGEST_STEP = 0.1  # [s] of scenes
+_LEAST_BEND = 1e-9   # sine of the angle at the second point below which a cable starts straight
 _PASSED_OVER = ('compiler', 'option', 'size', 'visual', 'statistic', 'asset', 'extension', 'worldbody', 'keyframe', 'custom')
 
 
@@ -22,34 +23,37 @@ def mujoco_cables(text):
         raise ConvertError(f'{error}; allowed: an XML file') from error
     if root.tag != 'mujoco':
         raise ConvertError(f'<{root.tag}>; allowed: <mujoco>')
-    found = Found([], gravity=[0, 0, -9.81])
-    option = root.find('option')
-    if option is not None:
+    found = Found([], gravity=[0, 0, -9.81], time_step=_TIME_STEP)
+    for option in root.findall('option'):
         found.gravity = _numbers(option, 'gravity', 3, found.gravity)
-        found.time_step = _numbers(option, 'timestep', 1, [0.002])[0]
+        found.time_step = _numbers(option, 'timestep', 1, [found.time_step])[0]
         if not 0 < found.time_step <= _LARGEST_STEP:
             raise ConvertError(f'<option timestep>: {found.time_step:g}; allowed: above 0, at most {_LARGEST_STEP} [s]')
+    if any(_text(flag, 'gravity', 'enable', ('enable', 'disable')) == 'disable' for flag in root.findall('option/flag')):
+        found.gravity = [0, 0, 0]
     for child in root:
         if child.tag == 'default':
             found.notes.append('<default>: its values are not applied')
         elif child.tag not in _PASSED_OVER:
-            found.notes.append(f'<{child.tag}>: its {len(child)} elements are not converted')
+            found.notes.append(f'<{child.tag}>: it is not converted')
     compiler = root.find('compiler')
     angles = (math.pi / 180 if _text(compiler, 'angle', 'degree', ('degree', 'radian')) == 'degree' else 1,
               _text(compiler, 'eulerseq', 'xyz'))
     for world in root.findall('worldbody'):
-        _visit(world, np.eye(4), True, angles, found)
+        _visit(world, np.eye(4), True, angles, found, 0)
     if not found.cables:
         raise ConvertError('no <composite type="cable">; allowed: a model with at least one')
     found.notes.append('cables do not stretch; damping, friction and armature of joints and geoms are not converted')
     return found
 
 
-def _visit(body, frame, is_fixed, angles, found):
+def _visit(body, frame, is_fixed, angles, found, depth):
+    if depth > MOST_DEPTH:
+        raise ConvertError(f'{_element(body)}: inside of {depth} others; allowed: at most {MOST_DEPTH}')
     for child in body:
         if child.tag in ('body', 'frame'):
             moves = child.tag == 'body' and any(joint.tag in ('joint', 'freejoint') for joint in child)
-            _visit(child, frame @ _pose(child, 'pos', angles), is_fixed and not moves, angles, found)
+            _visit(child, frame @ _pose(child, 'pos', angles), is_fixed and not moves, angles, found, depth + 1)
         elif child.tag == 'composite' and child.get('type') in ('cable', 'rope'):
             _add_cable(child, frame, is_fixed, angles, found)
         elif child.tag == 'composite':
@@ -80,7 +84,7 @@ def _numbers(element, key, count, default):
         if not all(map(math.isfinite, numbers)) or (count and len(numbers) < count):
             raise ValueError
     except ValueError:
-        allowed = (f'{count} ' if count else '') + 'finite numbers'
+        allowed = 'a finite number' if count == 1 else (f'{count} ' if count else '') + 'finite numbers'
         raise ConvertError(f'{_element(element)} {key}: {text[:60]!r}; allowed: {allowed}') from None
     return numbers
 
@@ -117,6 +121,8 @@ def _vertices(cable):
     counts = _numbers(cable, 'count', 1, None)
     if counts is None or counts[0] != round(counts[0]) or counts[0] < 2:
         raise ConvertError(f'{_element(cable)} count: {cable.get("count")!r}; allowed: an integer from 2, or vertex instead')
+    if counts[0] > MOST_POINTS:
+        raise ConvertError(f'{_element(cable)} count: {cable.get("count")!r}; allowed: at most {MOST_POINTS}')
     if cable.get('curve') is None:
         raise ConvertError(f'{_element(cable)} curve: missing; allowed: up to three of {", ".join(_CURVE)}, or vertex instead')
     curve = cable.get('curve').split()
@@ -134,6 +140,7 @@ def _vertices(cable):
 def _add_cable(element, frame, is_fixed, angles, found):
     pose = _pose(element, 'offset', angles)
     points = _vertices(element) @ pose[:3, :3].T + pose[:3, 3]
+    axes = frame[:3, :3] @ _first_axes(points)
     points = points @ frame[:3, :3].T + frame[:3, 3]
     geom = element.find('geom')
     if geom is None:
@@ -151,6 +158,10 @@ def _add_cable(element, frame, is_fixed, angles, found):
     cable.linear_density = _numbers(geom, 'density', 1, [DENSITY])[0] * area
     if geom.get('mass'):
         cable.linear_density = _numbers(geom, 'mass', 1, None)[0] * len(lengths) / lengths.sum()
+    elif shape == 'capsule':
+        more = 100 * 4 / 3 * size[0] * len(lengths) / max(lengths.sum(), LEAST_LENGTH)
+        found.notes.append(f'{_element(element)}: its capsules have caps, which are in each other: with them it weighs {more:.3g} % more '
+                           'in MuJoCo')
     if not cable.linear_density > 0:
         raise ConvertError(f'{_element(element)} geom: {cable.linear_density:g} kg/m; allowed: a mass or density above 0')
     if geom.get('rgba'):
@@ -160,7 +171,39 @@ def _add_cable(element, frame, is_fixed, angles, found):
     if cable.start and not is_fixed:
         found.notes.append(f'{_element(element)}: it is in a body that moves, which is not converted: its start is not held')
         cable.start = None
+    if len(set(cable.bending_stiffness or [])) > 1:
+        _orient(element, cable, axes, found)
     found.cables.append(cable)
+
+
+def _first_axes(points):
+    """Of the first body of a cable, in its parent: x along it, y in the plane of its first bend, as MuJoCo's compiler has it."""
+    steps = np.diff(points[:3], axis=0)
+    lengths = np.linalg.norm(steps, axis=1, keepdims=True)
+    if not lengths.min() > LEAST_LENGTH:  # an error later
+        return np.eye(3)
+    directions = steps / lengths
+    across = np.cross(directions[0], directions[-1])
+    if not np.linalg.norm(across) > _LEAST_BEND:
+        return smallest_turn(directions[0])
+    z_axis = across / np.linalg.norm(across)
+    return np.column_stack([directions[0], np.cross(z_axis, directions[0]), z_axis])
+
+
+def _orient(element, cable, axes, found):
+    """Has a cable that is stiffer about one axis bend about the axes of its first body."""
+    if cable.start == 'clamp':
+        cable.y_axis = axes[:, 1]
+        return
+    # Nothing says how its material is turned about it: the scene does so by the smallest turn of the fixed frame.
+    level = smallest_turn(axes[:, 0])
+    angle = math.degrees(math.atan2(axes[:, 1] @ level[:, 2], axes[:, 1] @ level[:, 1]))
+    quarters = round(angle / 90)
+    if quarters % 2:
+        cable.bending_stiffness.reverse()
+    if abs(angle - 90 * quarters) > 0.1:
+        found.notes.append(f'{_element(element)}: its section is turned by {angle:.3g} degrees about it, which takes a clamp at its start: '
+                           f'it is turned by {90 * quarters} degrees')
 
 
 def _section(shape, size):

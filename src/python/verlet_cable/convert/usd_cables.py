@@ -1,13 +1,19 @@
 """The BasisCurves of a text file of USD, as cables."""
 import numpy as np
 
-from .cables import RADIUS, Cable, Found
+from .cables import RADIUS, Cable, Found, axis_matrix, quaternion_matrix
 from .errors import ConvertError
 from .usda import read_usda
 
 _UNITS = 0.01  # [m] of a unit where metersPerUnit is not given, as USD has it
 _Y_UP = np.array([[1, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]])
 _ARCS = ('references', 'payload', 'inherits', 'specializes', 'variants')
+_LEFT_OUT = ': left out'
+_STEPS = 8  # straight segments of a cubic part
+# Rows: of t^3, t^2, t, 1; columns: of its four points.
+_CUBICS = {'bezier': np.array([[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 3, 0, 0], [1, 0, 0, 0.0]]),
+           'bspline': np.array([[-1, 3, -3, 1], [3, -6, 3, 0], [-3, 0, 3, 0], [1, 4, 1, 0]]) / 6,
+           'catmullRom': np.array([[-1, 3, -3, 1], [2, -5, 4, -1], [-1, 0, 1, 0], [0, 2, 0, 0]]) / 2}
 _SOLIDS = ('Cube', 'Sphere', 'Capsule', 'Cylinder', 'Cone', 'Mesh', 'Plane', 'NurbsCurves', 'HermiteCurves', 'NurbsPatch', 'Points',
            'PointInstancer')
 
@@ -33,14 +39,31 @@ def usd_cables(text):
     for prim in prims:
         _visit(prim, root, found)
     if not found.cables:
-        raise ConvertError('no BasisCurves; allowed: a file with at least one')
+        left_out = [note for note in found.notes if note.endswith(_LEFT_OUT)]
+        raise ConvertError('no BasisCurves; allowed: a file with at least one', *left_out)
     found.notes.append('USD has no weight and no stiffness of curves: they weigh as much as water, do not stretch, and bend freely; nothing '
                        'holds them')
     return found
 
 
+def _why_left_out(prim):
+    """Why there is nothing of a prim and of what is in it; None if there is."""
+    visibility = prim.attributes.get('visibility')
+    if prim.metadata.get('active') is False:
+        return 'it is not active'
+    if prim.specifier == 'over':
+        return 'it only changes a prim of another file (over)'
+    if visibility and visibility.first() == 'invisible':
+        return 'it is invisible at the start'
+    return None
+
+
 def _visit(prim, transform, found):
     if prim.specifier == 'class':
+        return
+    reason = _why_left_out(prim)
+    if reason:
+        found.notes.append(f'{prim.path}: {reason}{_LEFT_OUT}')
         return
     for arc in _ARCS:
         if arc in prim.metadata:
@@ -76,15 +99,17 @@ def _add_curves(prim, transform, found):
     if points is None or counts is None:
         missing = 'points' if points is None else 'curveVertexCounts'
         raise ConvertError(f'{prim.path}.{missing}: missing; allowed: one of each')
-    if (counts != counts.round()).any() or (counts < 2).any() or counts.sum() != len(points):
+    if not np.isfinite(counts).all() or (counts != counts.round()).any() or (counts < 2).any() or counts.sum() != len(points):
         raise ConvertError(f'{prim.path}.curveVertexCounts: {[f"{count:g}" for count in counts]}; allowed: integers from 2 whose sum is '
                            f'{len(points)}, which is how many points there are')
     counts = counts.astype(int)
     if any(attribute.samples for attribute in prim.attributes.values()):
         found.notes.append(f'{prim.path}: it moves over time: its first shape is taken')
-    _note_kind(prim, found)
+    basis, is_closed = _kind(prim, found)
+    if basis:
+        found.notes.append(f'{prim.path}: a cubic curve: {_STEPS} straight segments are in each of its parts')
     scale = abs(np.linalg.det(transform[:3, :3])) ** (1 / 3)
-    widths = _widths(prim, counts, scale, found)
+    widths = _widths(prim, counts, [len(_parts(count, basis, is_closed, prim)) + (not is_closed) for count in counts], scale, found)
     colors = _array(prim, 'primvars:displayColor', 3)
     opacity = _array(prim, 'primvars:displayOpacity', 1, np.ones(1))
     placed = points @ transform[:3, :3].T + transform[:3, 3]
@@ -93,23 +118,67 @@ def _add_curves(prim, transform, found):
         element = prim.path + (f', curve {index}' if len(counts) > 1 else '')
         color = None if colors is None or not len(colors) else (*colors[min(index, len(colors) - 1)], *opacity[:1])
         label = prim.name + (f'_{index + 1}' if len(counts) > 1 else '')
-        found.cables.append(Cable(element, label, placed[first:last], widths[index] / 2, color=color))
+        line = placed[first:last]
+        found.cables.append(Cable(element, label, _evaluated(line, _parts(len(line), basis, is_closed, prim), basis, is_closed),
+                                  widths[index] / 2, color=color))
 
 
-def _note_kind(prim, found):
-    attribute = prim.attributes.get('type')
-    kind = attribute.first() if attribute and attribute.first() else 'cubic'
-    if kind not in ('linear', 'cubic'):
-        raise ConvertError(f'{prim.path}.type: {kind!r}; allowed: "linear", "cubic"')
-    if kind == 'cubic':
-        found.notes.append(f'{prim.path}: a cubic curve: its points are joined by straight segments')
-    wrap = prim.attributes.get('wrap')
-    if wrap and wrap.first() == 'periodic':
+def _token(prim, name, default, allowed):
+    attribute = prim.attributes.get(name)
+    value = attribute.first() if attribute and attribute.first() else default
+    if value not in allowed:
+        quoted = ', '.join(f'"{one}"' for one in allowed)
+        raise ConvertError(f'{prim.path}.{name}: {value!r}; allowed: {quoted}')
+    return value
+
+
+def _kind(prim, found):
+    """(what its points are, whether it is closed): straight, or what makes a cubic curve of them."""
+    kind = _token(prim, 'type', 'cubic', ('linear', 'cubic'))
+    basis = _token(prim, 'basis', 'bezier', tuple(_CUBICS)) if kind == 'cubic' else None
+    wrap = _token(prim, 'wrap', 'nonperiodic', ('nonperiodic', 'periodic', 'pinned'))
+    if wrap == 'periodic':
         found.notes.append(f'{prim.path}: a closed curve: it is left open')
+    if wrap == 'pinned' and basis in ('bspline', 'catmullRom'):
+        return f'pinned {basis}', False
+    return basis, wrap == 'periodic'
 
 
-def _widths(prim, counts, scale, found):
-    """[m] of each curve."""
+def _parts(count, basis, is_closed, prim):
+    """Indices of the points of each part of a curve of so many points: two of a straight part, four of a cubic one."""
+    count = int(count)
+    if basis is None:
+        return [(k, k + 1) for k in range(count - 1)]
+    is_pinned = basis.startswith('pinned')
+    step = 3 if basis == 'bezier' else 1
+    least = 2 if is_pinned else 4 - is_closed
+    if count < least or (basis == 'bezier' and (count - (not is_closed)) % 3):
+        of_bezier = ', 3 more for each further part' if basis == 'bezier' else ''
+        raise ConvertError(f'{prim.path}.curveVertexCounts: {count}; allowed: at least {least} for a curve of basis "{basis.split()[-1]}"'
+                           f'{of_bezier}')
+    if is_pinned:  # -1 and count: as far beyond the end as the next is before it
+        return [(k - 1, k, k + 1, k + 2) for k in range(count - 1)]
+    if is_closed:
+        return [tuple((k + j) % count for j in range(4)) for k in range(0, count, step)]
+    return [(k, k + 1, k + 2, k + 3) for k in range(0, count - 3, step)]
+
+
+def _evaluated(points, parts, basis, is_closed):
+    """(n + 1, 3)"""
+    if basis is None:
+        return points
+    ends = np.vstack([points, 2 * points[-1] - points[-2], 2 * points[0] - points[1]])  # the last has the index -1
+    at = np.arange(_STEPS) / _STEPS
+    powers = np.column_stack([at ** 3, at ** 2, at, at ** 0])
+    matrix = _CUBICS[basis.split()[-1]]
+    line = [powers @ matrix @ ends[list(part)] for part in parts]
+    if not is_closed:  # else it would end where it begins
+        line.append(np.ones((1, 4)) @ matrix @ ends[list(parts[-1])])
+    return np.vstack(line)
+
+
+def _widths(prim, counts, joints, scale, found):
+    """[m] of each curve. `joints`: how many places each has between and at the ends of its parts."""
     widths = _array(prim, 'widths', 1)
     if widths is None or not len(widths):
         found.notes.append(f'{prim.path}: it has no widths: its radius is {RADIUS:g} m')
@@ -121,6 +190,8 @@ def _widths(prim, counts, scale, found):
         return np.full(len(counts), widths[0])
     if len(widths) == len(counts):
         return widths
+    if len(widths) != counts.sum() and len(widths) == sum(joints):
+        counts = np.array(joints)
     if len(widths) != counts.sum():
         raise ConvertError(f'{prim.path}.widths: {len(widths)} of them; allowed: 1, {len(counts)} (one a curve) or {counts.sum()} (one a '
                            'point)')
@@ -170,23 +241,3 @@ def _operation(prim, name):
     except (TypeError, ValueError, KeyError):
         raise ConvertError(f'{prim.path}.{name}: {value!r}; allowed: its numbers') from None
     return result
-
-
-def axis_matrix(axis, angle):
-    """The rotation by an angle [rad] about x, y or z."""
-    i, j = (axis + 1) % 3, (axis + 2) % 3
-    matrix = np.eye(3)
-    matrix[[i, j], [i, j]] = np.cos(angle)
-    matrix[i, j], matrix[j, i] = -np.sin(angle), np.sin(angle)
-    return matrix
-
-
-def quaternion_matrix(quaternion):
-    """Of w, x, y, z, normalized."""
-    norm = np.linalg.norm(quaternion)
-    if len(quaternion) != 4 or not norm > 0:
-        raise ValueError
-    w, x, y, z = quaternion / norm
-    return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                     [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                     [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])

@@ -1,8 +1,10 @@
 """Reads the text format of USD (openusd.org): prims with attributes. References, payloads and sublayers are not followed."""
+import contextlib
 import dataclasses
 import re
 from typing import Any, Dict, List
 
+from .cables import MOST_DEPTH
 from .errors import ConvertError
 
 _TOKEN = re.compile(r'''
@@ -51,7 +53,7 @@ def read_usda(text):
 
 class _Reader:
     def __init__(self, text):
-        self.tokens, self.next = [], 0
+        self.tokens, self.next, self.depth = [], 0, 0
         place, line = 0, 1
         while place < len(text):
             match = _TOKEN.match(text, place)
@@ -89,6 +91,14 @@ class _Reader:
         self.next += found
         return found
 
+    @contextlib.contextmanager
+    def deeper(self):
+        self.depth += 1
+        if self.depth > MOST_DEPTH:
+            raise ConvertError(f'line {self.tokens[self.next][2]}: more than {MOST_DEPTH} brackets in each other; allowed: fewer')
+        yield
+        self.depth -= 1
+
     def prim(self, parent):
         specifier = self.take('def, over or class', 'word')
         if specifier not in _SPECIFIERS:
@@ -100,8 +110,9 @@ class _Reader:
         if self.sees('('):
             prim.metadata = self.metadata()
         self.take('{')
-        while not self.takes('}'):
-            self.statement(prim)
+        with self.deeper():
+            while not self.takes('}'):
+                self.statement(prim)
         return prim
 
     def statement(self, prim):
@@ -163,11 +174,14 @@ class _Reader:
 
     def value(self):
         if self.takes('('):
-            return tuple(self.items(')'))
+            with self.deeper():
+                return tuple(self.items(')'))
         if self.takes('['):
-            return self.items(']')
+            with self.deeper():
+                return self.items(']')
         if self.takes('{'):
-            return self.entries()
+            with self.deeper():
+                return self.entries()
         kind, text, line = self.tokens[self.next]
         self.take('a value', 'string', 'asset', 'path', 'number', 'word')
         if kind == 'string':
