@@ -345,6 +345,103 @@ TEST(SlippingWinch, KeepsTheLimitOfSegments) {
   EXPECT_NEAR(length(world), 2.5, 5e-3);
 }
 
+/// A body of 2 kg on a rope that hangs from a winch.
+SceneDesc hoist(double rope_length, double axial_stiffness, double acceleration) {
+  SceneDesc scene = winch_scene(20, rope_length, axial_stiffness, 2e-3);
+  scene.winch_acceleration = acceleration;
+  scene.materials[0].material.linear_density = 0.05;
+  BodyDesc& load = scene.bodies.emplace_back();
+  load.name = "load";
+  load.mass = 2;
+  load.inertia = Vector3::Constant(0.01);
+  AttachmentDesc end = scenes::attachment("hook", At::end, {0, 0, 0});
+  end.body = "load";
+  scene.cables[0].attachments.push_back(end);
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  return scene;
+}
+
+double velocity(const World& world) {
+  return world.bodies()[0].velocity.z();
+}
+
+/// A winch that is as fast as it likes takes in what hangs on a body, and no more than its acceleration is felt.
+TEST(Hoist, TensionIsThatOfTheAcceleration) {
+  for (const double speed : {0.9, 1.5, 3.0}) {
+    const SceneDesc scene = hoist(6, infinity, 2);
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(edit::SetLength{0, false, 0.5, speed}).ok);
+    for (int i = 1; i <= 1500; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+      ASSERT_GT(tension(world), 0.99 * 2 * (gravity - 2)) << i;
+      ASSERT_LT(tension(world), 1.01 * (2 + 0.3) * (gravity + 2)) << i;
+    }
+    EXPECT_LT(unaccounted(world, gravity * 2.3 * 6), 1e-4);
+  }
+}
+
+/// Where the tension says how fast it winds, a rope that sways a little goes on so as segments are taken in. 0.64 m/s: of 22 N.
+TEST(Hoist, SwayingRopesAreTakenIn) {
+  for (const bool slips : {false, true})
+    for (const double axial_stiffness : {infinity, 1e5}) {
+      const SceneDesc scene = hoist(1, axial_stiffness, 10);
+      World world(scene, initial_frames(scene));
+      std::vector<Vector3> velocities = world.cables()[0].state.velocities;
+      for (int i = 5; i < 15; ++i) velocities[i].x() += 1e-3;
+      ASSERT_TRUE(world.apply(edit::SetState{0, std::nullopt, velocities}).ok);
+      if (slips)
+        ASSERT_TRUE(world.apply(edit::SetLength{0, false, 0.3, 3, 22}).ok);
+      else
+        ASSERT_TRUE(world.apply(kept(22)).ok);
+      double aside = 0;
+      for (int i = 1; i <= 300; ++i) {
+        ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+        for (const Vector3& place : world.cables()[0].state.positions) aside = std::max(aside, std::abs(place.x()));
+      }
+      EXPECT_LT(aside, 1e-3) << slips << axial_stiffness;
+      EXPECT_NEAR(tension(world), 22, 0.1);
+      EXPECT_NEAR(velocity(world), 0.6 * (22 / 2.05 - gravity), 0.05);
+    }
+}
+
+/// What a winch does is its tension times what it takes in; a spool that turns freely does nothing.
+TEST(Hoist, WorkOfElasticRopesIsTensionTimesLength) {
+  for (const double axial_stiffness : {1e4, 1e5, 1e6})
+    for (const double wanted : {0.0, 15.0, 25.0}) {
+      const SceneDesc scene = hoist(1, axial_stiffness, 1000);
+      World world(scene, initial_frames(scene));
+      ASSERT_TRUE(world.apply(kept(wanted)).ok);
+      double work = 0;
+      for (int i = 1; i <= 150; ++i) {
+        const double before = length(world);
+        ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+        work -= wanted * (length(world) - before);
+      }
+      const EnergyBalance balance = world.ledger().balance;
+      // What is paid out and falls brings its own energy.
+      EXPECT_NEAR(balance.work.winches, work, 0.03 * gravity * 2) << axial_stiffness << ' ' << wanted;
+      EXPECT_LT(balance.dissipated.unresolved, 0.01 * gravity * 2) << axial_stiffness << ' ' << wanted;
+      EXPECT_LT(unaccounted(world, gravity * 2), 1e-4) << axial_stiffness << ' ' << wanted;
+    }
+}
+
+/// It stands where the body is as near as it may be.
+TEST(Hoist, KeptTensionBrakesAtTheLastSegment) {
+  for (const double shortest : {0.0, 0.05, 0.1}) {
+    const SceneDesc scene = hoist(1, infinity, 1);
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(edit::SetTension{0, false, 30, 1, shortest, 2}).ok);
+    double before = 0;
+    for (int i = 1; i <= 1500; ++i) {
+      ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << shortest << ' ' << i;
+      ASSERT_LT(std::abs(velocity(world) - before), 0.02) << shortest << ' ' << i;
+      before = velocity(world);
+    }
+    EXPECT_NEAR(before, 0, 1e-3) << shortest;
+    EXPECT_NEAR(length(world), std::max(shortest, 0.005), 1e-3);
+  }
+}
+
 struct HookCase {
   const char* name;
   bool bends, clamped, is_rod;

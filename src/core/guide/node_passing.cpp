@@ -164,7 +164,12 @@ Boundary moving_boundary(int index, const State& state) {
   const CableProgress& progress = state.cable_progress[index];
   Boundary boundary = boundary_now(progress.targets);
   load_flows(index, true, state, boundary);
-  if (progress.drive) boundary.growing.push_back({progress.drive->segment, progress.drive->fed_rate()});
+  if (progress.drive) {
+    GrowingSegment& growing = boundary.growing.emplace_back();
+    growing.segment = progress.drive->segment;
+    growing.growth = progress.drive->fed_rate();
+    growing.keeps_tension = progress.drive->heeds_tension();
+  }
   return boundary;
 }
 

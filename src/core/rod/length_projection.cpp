@@ -161,6 +161,9 @@ void project_velocities(const CableModel& model, const std::vector<HeldNode>& he
     changes[g.segment] += (positions[g.segment + 1] - positions[g.segment]).norm() * g.growth;
   std::vector<double> lengths = state.rest_lengths;
   free_elastic(materials, lengths);
+  // Where the tension says how fast a winch winds, that follows from the nodes' velocities.
+  for (const GrowingSegment& g : growing)
+    if (g.keeps_tension) lengths[g.segment] = 0;
   LengthSystem system(state.masses, held, lengths);
   if (flows) system.set_flows(model, state, *flows);
   system.apply(positions, changes, velocities);

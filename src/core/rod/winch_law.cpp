@@ -70,8 +70,8 @@ double CableStepper::wanted_by_winch(const Substep& s, double end) const {
   const int i = winch_.segment;
   if (is_elastic_at(i)) return wanted_growth(strain_resistance(s, i), wound_length(s), winch_.law.tension, end);
   const double tension = tension_density_[i] * (length_[i] + s.part() * (end - length_[i]));
-  const bool is_movable = system_.movable[i] + system_.movable[i + 1] > 0;
-  return wanted_growth(winch_.planned_rest, winch_.law.tension, tension, end, is_movable ? 1 / winch_resistance() : 0);
+  const bool is_still = std::find(both_held_.begin(), both_held_.end(), i) != both_held_.end();
+  return wanted_growth(winch_.planned_rest, winch_.law.tension, tension, end, is_still ? 0 : 1 / winch_resistance());
 }
 
 void CableStepper::wind_beyond(const Substep& s, double wanted) {
@@ -151,17 +151,31 @@ void CableStepper::finish_winch(const Substep& s) {
   }
 }
 
+/// [J] Of an elastic segment.
+double CableStepper::strain_energy(int i, double rest, double length) const {
+  return rest * Resistance<double>{axial_stiffness_[i], 0}.energy(length / rest - 1);
+}
+
 /// [J] The state's rest length has been planned; with that which the winch found, an elastic segment takes in another energy as
 /// it is strained. The winch brings the difference, as if it had wound to that first.
 double CableStepper::work_of_winch_beyond() const {
   const int i = winch_.segment;
   const auto gain = [&](double rest) {
-    const auto energy = [&](double length) {
-      return Resistance<double>{axial_stiffness_[i] * rest, 0}.energy(length / rest - 1);
-    };
-    return energy(std::sqrt(end_square_[i])) - energy(length_[i]);
+    return strain_energy(i, rest, std::sqrt(end_square_[i])) - strain_energy(i, rest, length_[i]);
   };
   return gain(winch_.planned_rest) - gain(target_length_[i]);
+}
+
+/// [J] Where forces are taken at the end of the substep, an elastic segment has been wound to its rest length there before it was
+/// strained. This is missing to both at once: tension does its work on what comes in, which brings the energy of its strain.
+double CableStepper::work_of_winding_at_once(const Substep& s, int i) const {
+  if (s.part() < 1) return 0;
+  const Straining strained = straining(s, i);
+  const Resistance<double> resistance{axial_stiffness_[i], 0};
+  const auto per_length = [&](double strain) { return -resistance.stress(strain, 0) - resistance.energy(strain); };
+  const double start = length_[i] / strained.start - 1, end = std::sqrt(end_square_[i]) / strained.end - 1;
+  const double at_once = 0.5 * (strained.end - strained.start) * (per_length(start) + per_length(end));
+  return at_once - (strain_energy(i, strained.end, length_[i]) - strain_energy(i, strained.start, length_[i]));
 }
 
 }  // namespace verlet_cable

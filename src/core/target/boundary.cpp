@@ -97,6 +97,14 @@ double drawn_in_substep(const HeldSpan& span, const std::vector<GrowingSegment>&
   return drawn;
 }
 
+/// [m] By how much it is longer where the state is wound to than at the start of the substep.
+double wound_from_start(const HeldSpan& span, const std::vector<GrowingSegment>& growing) {
+  double length = 0;
+  for (const GrowingSegment& segment : growing)
+    if (segment.segment >= span.first && segment.segment < span.last) length += segment.way - segment.left;
+  return length;
+}
+
 /// How long it may be at the end of the substep.
 HeldSpan let_out(HeldSpan span, const std::vector<GrowingSegment>& growing) {
   span.length += let_out_into(span, growing);
@@ -145,7 +153,8 @@ int lengths_in_substep(const CableModel& model, const CableState& state, const B
   int first = -1;
   each_rigid_span(model, state, boundary.nodes, [&](const HeldSpan& found) {
     const HeldSpan span = let_out(found, boundary.growing);
-    const double distance = span.gives_way ? span.start_distance : span.distance;
+    // What bodies have drawn out is what the span lacked at the start.
+    const double distance = span.gives_way ? span.start_distance + wound_from_start(found, boundary.growing) : span.distance;
     const bool is_too_short = distance > span.length * (1 + reported_stretch) + span.rounding;
     if (is_too_short && first < 0 && (!span.gives_way || drawn_out.is_reported)) first = span.first;
     if (span.gives_way) {
