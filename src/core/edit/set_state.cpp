@@ -50,6 +50,7 @@ EditResult World::Implementation::apply(const edit::SetState& set) {
   next.yielding = next.taut_energy = 0;
   cable.state = std::move(next);
   after_remeshing(set.cable);
+  if (set.positions) yield_to_shape(set.cable);
   move_with_holders(set.cable, state);
   return {true, "", cable.model->name};
 }

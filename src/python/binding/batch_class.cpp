@@ -310,6 +310,8 @@ void add_batch_class(py::module_& module) {
       .def("tension", read<Quantity::tension>, py::arg("name"), "(count, n) or (count, records, n) [N].")
       .def("curvature", read<Quantity::curvature>, py::arg("name"), "(count, n - 1) or (count, records, n - 1) [1/m].")
       .def("twist", read<Quantity::twist>, py::arg("name"), "(count, n - 1) or (count, records, n - 1) [rad/m].")
+      .def("plastic_curvature", read<Quantity::plastic_curvature>, py::arg("name"),
+           "(count, n - 1) or (count, records, n - 1) [1/m].")
       .def("orientations", read<Quantity::orientations>, py::arg("name"), "(count, n, 4) or (count, records, n, 4): x, y, z, w.")
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"), "(count, 6) or (count, records, 6) [N, N m].")
       .def(

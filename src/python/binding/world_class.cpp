@@ -198,6 +198,9 @@ void add_world_class(py::module_& module) {
            "(n,) [N] of the segments of a cable or the links of a net, mean over the last step; tension is positive.")
       .def("curvature", read<Quantity::curvature>, py::arg("name"), "(n - 1,) [1/m] at the inner nodes of a cable.")
       .def("twist", read<Quantity::twist>, py::arg("name"), "(n - 1,) [rad/m] at the inner nodes of a cable.")
+      .def("plastic_curvature", read<Quantity::plastic_curvature>, py::arg("name"),
+           "(n - 1,) [1/m] at the inner nodes of a cable: by which yielding has bent what carries no moment; 0 where nothing can "
+           "yield.")
       .def("orientations", read<Quantity::orientations>, py::arg("name"),
            "(n, 4) quaternions x, y, z, w of the segments of a cable: the x axis along the segment, with the roll of the "
            "material.")
@@ -225,9 +228,9 @@ void add_world_class(py::module_& module) {
       .def(
           "ledger", [](const PythonWorld& world) { return ledger_dict(use(world).ledger()); },
           "Where energy [J] has come from and gone since the start: a dict with the dicts work (attachments, winches, obstacles, "
-          "applied) and dissipated (axial, bending, torsional, drag, contact, guides, bodies, unresolved, edits), change (of "
-          "energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and unaccounted_steps (in which "
-          "that was too much).")
+          "applied) and dissipated (axial, bending, torsional, yielding, drag, contact, guides, bodies, unresolved, edits), "
+          "change (of energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and "
+          "unaccounted_steps (in which that was too much).")
       .def("draw", draw, py::arg("path") = py::none(), py::arg("view") = py::none(), py::arg("size") = py::make_tuple(800, 600),
            "A picture of the cables, nets, particles, bodies and obstacles as they are now, by matplotlib, which needs no "
            "display: "
