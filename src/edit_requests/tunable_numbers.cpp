@@ -12,10 +12,11 @@ namespace verlet_cable {
 namespace {
 
 /// Dampings, stiffnesses and friction: what does not change masses or shapes.
-constexpr double MaterialDesc::*tunable_of_material[] = {&MaterialDesc::axial_stiffness,   &MaterialDesc::torsional_stiffness,
-                                                         &MaterialDesc::axial_damping,     &MaterialDesc::bending_damping,
-                                                         &MaterialDesc::torsional_damping, &MaterialDesc::drag,
-                                                         &MaterialDesc::friction,          &MaterialDesc::rolling_friction};
+constexpr double MaterialDesc::*tunable_of_material[] = {
+    &MaterialDesc::axial_stiffness, &MaterialDesc::torsional_stiffness, &MaterialDesc::axial_damping,
+    &MaterialDesc::bending_damping, &MaterialDesc::torsional_damping,   &MaterialDesc::drag,
+    &MaterialDesc::friction,        &MaterialDesc::rolling_friction,    &MaterialDesc::yield_curvature,
+    &MaterialDesc::hardening,       &MaterialDesc::bending_friction};
 
 template <class Part>
 void add_vector(const std::string& name, const std::string& description, Part SceneDesc::*part, Vector3 Part::*vector,
@@ -101,8 +102,7 @@ SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers
       number->set(scene, change.value);
     }
   }
-  if (unknown > most_unknown)
-    errors.push_back("tuning: " + std::to_string(unknown - most_unknown) + " more unknown parameters");
+  if (unknown > most_unknown) errors.push_back("tuning: " + std::to_string(unknown - most_unknown) + " more unknown parameters");
   if (errors.empty()) errors = validate(scene);
   if (!errors.empty()) throw SceneError(std::move(errors));
   return scene;

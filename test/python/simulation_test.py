@@ -38,7 +38,7 @@ def test_the_ledger_adds_up_and_is_that_of_cable_sim(hang, cable_sim, tmp_path):
     assert ledger == summary['ledger']
     assert batch.ledger(-1) == batch.ledger(0) == {**ledger, 'unaccounted_steps': 0}
     assert list(ledger['work']) == ['attachments', 'winches', 'obstacles', 'applied']
-    assert list(ledger['dissipated']) == ['axial', 'bending', 'torsional', 'drag', 'contact', 'guides', 'bodies', 'unresolved', 'edits']
+    assert list(ledger['dissipated']) == ['axial', 'bending', 'torsional', 'yielding', 'drag', 'contact', 'guides', 'bodies', 'unresolved', 'edits']
     energy = summary['energy']
     assert ledger['change'] == pytest.approx(energy['total'] - energy['initial_total'], abs=1e-12)
     work, lost = sum(ledger['work'].values()), sum(ledger['dissipated'].values())
@@ -68,10 +68,26 @@ def test_world_has_the_bytes_of_cable_sim(hang, cable_sim, tmp_path):
         assert world.energy() == {key: value for key, value in summary['energy'].items() if key != 'initial_total'}
 
 
+def test_what_is_bent_too_far_stays_bent(hang):
+    hang['materials']['wire'].update(bending_stiffness=0.01, yield_curvature=0.5, hardening=0.2)
+    world = World(Scene.from_dict(hang))
+    world.step(100)
+    plastic = world.plastic_curvature('hose')
+    assert plastic.max() > 0.05
+    copy = World.load(world.scene, world.save())
+    assert copy.state_hash == world.state_hash
+    assert (copy.plastic_curvature('hose') == plastic).all()
+    batch = Batch(Scene.from_dict(hang), 2)
+    batch.step(100, record_every=50, fields=['plastic_curvature'])
+    assert (batch.plastic_curvature('hose')[0, 1] == plastic).all()
+    assert world.ledger()['dissipated']['yielding'] >= 0
+
+
 def test_shapes_of_what_is_read(hang):
     world = World(Scene.from_dict(hang))
     world.step(3)
-    shapes = {'positions': (21, 3), 'velocities': (21, 3), 'tension': (20,), 'curvature': (19,), 'twist': (19,), 'orientations': (20, 4)}
+    shapes = {'positions': (21, 3), 'velocities': (21, 3), 'tension': (20,), 'curvature': (19,), 'twist': (19,), 'plastic_curvature': (19,),
+              'orientations': (20, 4)}
     for name, shape in shapes.items():
         array = getattr(world, name)('hose')
         assert (array.shape, array.dtype, array.flags.c_contiguous) == (shape, numpy.float64, True), name

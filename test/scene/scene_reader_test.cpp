@@ -33,7 +33,7 @@ fluid: {density: 1000, velocity: [1, 2, 3], surface: 0.5, normal_drag: 1.1, tang
 materials:
   rope: {linear_density: 0.2, radius: 0.01, drag: 0.3, friction: 0.5, axial_stiffness: 1e4, bending_stiffness: 0.02,
          torsional_stiffness: 0.015, axial_damping: 3, bending_damping: 0.001, torsional_damping: 0.002, breaking_tension: 900,
-         rolling_friction: 0.3}
+         rolling_friction: 0.3, yield_curvature: 2, hardening: 0.1, bending_friction: 0.004}
 cables:
   - name: a
     length: 2
@@ -89,6 +89,9 @@ cables:
   EXPECT_EQ(scene.find_material("rope")->bending_damping, 0.001);
   EXPECT_EQ(scene.find_material("rope")->torsional_damping, 0.002);
   EXPECT_EQ(scene.find_material("rope")->rolling_friction, 0.3);
+  EXPECT_EQ(scene.find_material("rope")->yield_curvature, 2);
+  EXPECT_EQ(scene.find_material("rope")->hardening, 0.1);
+  EXPECT_EQ(scene.find_material("rope")->bending_friction, 0.004);
   EXPECT_EQ(scene.find_material("rope")->breaking_tension, 900);
   EXPECT_EQ(scene.find_material("string"), nullptr);
 

@@ -22,6 +22,13 @@ struct CableModel {
   double segment_length = 0;  ///< [m] in the scene: winches pay out and take in segments of this length
 };
 
+/// What bending has left behind in half a segment, about the material's y and z axes [rad]: a joint between two segments has that
+/// of the halves beside it, one beside a clamp that of its half.
+struct HalfBend {
+  std::array<double, 2> yielded{0, 0};  ///< that part of its material that yields would have where it is unstrained
+  std::array<double, 2> slipped{0, 0};  ///< where the friction between its strands has no moment
+};
+
 /// Indicators of motion that substeps do not resolve: it alternates from each substep to the next.
 struct UnresolvedMotion {
   std::vector<Vector3> acceleration_changes;  ///< [m/s^2] a node, n + 1, from the substep before the last to the last
@@ -61,8 +68,8 @@ struct CableState {
   std::vector<double> axial_multiplier;
   /// 0 to 1: how far what cannot stretch yields between holders that draw it straight; as long as it is strained
   double yielding = 0;
-  /// [J] that tension has stored in what cannot stretch: in the compliance that makes it unique between two holders, and where that
-  /// yields
+  /// [J] that tension has stored in what cannot stretch: in the compliance that makes it unique between two holders, and where
+  /// that yields
   double taut_energy = 0;
   std::vector<double> twist;  ///< [rad/m] a segment, n; 0 for a whole rod
   // Of a whole rod, empty otherwise
@@ -71,6 +78,8 @@ struct CableState {
   /// [rad] a node, n + 1, any number of turns: from the segment before it to the one after; at a clamped end between clamp and
   /// segment; 0 at other ends, and at inner clamps, whose targets store it
   std::vector<double> joint_twist;
+  /// a segment, n: of its halves at its start and at its end; empty where nothing yields or rubs as it is bent
+  std::vector<std::array<HalfBend, 2>> bending_memory;
   int reference_node = 0;  ///< where the orientation of the material is defined: the node of the first clamp
   Quaternion reference_orientation = Quaternion::Identity();  ///< there: x along the cable, roll of the material
 
@@ -91,14 +100,17 @@ struct SimulatedCable {
 };
 
 /// Whether bending and twist depend on each other through the material's axes: such a cable has a material frame per segment, in
-/// `directors`, `spin` and `joint_twist` of its state. Others, straight at rest and as stiff about y as about z, need none.
+/// `directors`, `spin` and `joint_twist` of its state. Others, straight at rest and as stiff about y as about z, need none: what
+/// was bent before must not matter either.
 bool is_whole_rod(const CableModel& model, const CableState& state);
 
 /// Shapes derived from positions, for display and messages. n segments.
 std::vector<Quaternion> segment_orientations(const CableState& state);  ///< n: x along the segment, roll of the material
 std::vector<double> node_curvature(const CableState& state);            ///< [1/m] n - 1, inner nodes
 std::vector<double> node_twist(const CableState& state);                ///< [rad/m] n - 1, inner nodes
-double strain(const CableState& state, int segment);                    ///< l / l0 - 1
+/// [1/m] n - 1, inner nodes: by which yielding has bent what carries no moment; empty where nothing can yield.
+std::vector<double> plastic_curvature(const SimulatedCable& cable);
+double strain(const CableState& state, int segment);  ///< l / l0 - 1
 
 /// The point of a cable nearest to `point`.
 struct NearestPoint {

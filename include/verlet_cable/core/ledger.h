@@ -30,6 +30,7 @@ struct EnergyBalance {
   };
   struct Dissipated {
     double axial = 0, bending = 0, torsional = 0;  ///< by the damping of materials
+    double yielding = 0;                           ///< by bending that stays, and friction between strands as they bend
     double drag = 0;                               ///< by what is at rest with the fluid
     double contact = 0;                            ///< between surfaces, friction included
     double guides = 0;                             ///< by friction in guides and bearings
@@ -37,15 +38,16 @@ struct EnergyBalance {
     double unresolved = 0;                         ///< motion that steps do not resolve
     double edits = 0;                              ///< by cuts, joins, pins, jumps, overstretched spans
 
-    static constexpr std::array<BalanceField<Dissipated>, 9> fields{{{"axial", &Dissipated::axial},
-                                                                     {"bending", &Dissipated::bending},
-                                                                     {"torsional", &Dissipated::torsional},
-                                                                     {"drag", &Dissipated::drag},
-                                                                     {"contact", &Dissipated::contact},
-                                                                     {"guides", &Dissipated::guides},
-                                                                     {"bodies", &Dissipated::bodies},
-                                                                     {"unresolved", &Dissipated::unresolved},
-                                                                     {"edits", &Dissipated::edits}}};
+    static constexpr std::array<BalanceField<Dissipated>, 10> fields{{{"axial", &Dissipated::axial},
+                                                                      {"bending", &Dissipated::bending},
+                                                                      {"torsional", &Dissipated::torsional},
+                                                                      {"yielding", &Dissipated::yielding},
+                                                                      {"drag", &Dissipated::drag},
+                                                                      {"contact", &Dissipated::contact},
+                                                                      {"guides", &Dissipated::guides},
+                                                                      {"bodies", &Dissipated::bodies},
+                                                                      {"unresolved", &Dissipated::unresolved},
+                                                                      {"edits", &Dissipated::edits}}};
     double total() const { return sum(*this); }
   };
   Work work;

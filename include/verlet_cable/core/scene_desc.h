@@ -45,6 +45,12 @@ struct MaterialDesc {
   /// [N/m^2], > 0: force per length and compression of the section between what squeezes it; infinite: stiff
   double transverse_stiffness = infinity;
   double maximum_squeeze = infinity;  ///< [N/m], > 0; a larger force per length across the cable is reported as an event
+  double yield_curvature = infinity;  ///< [1/m], > 0; bending beyond it stays; infinite: never
+  double hardening = 0;               ///< bending stiffness beyond the yield curvature over that before, 0 to 1
+  double bending_friction = 0;        ///< [N m] moment of dry friction between strands, >= 0
+
+  /// Whether it matters how a cable was bent before.
+  bool remembers_bending() const { return (yield_curvature < infinity && hardening < 1) || bending_friction > 0; }
 };
 
 struct PointMassDesc {

@@ -81,7 +81,7 @@ constexpr std::array<Field<WaveDesc>, 4> wave_fields{{
     {"phase", &WaveDesc::phase, "rad", {-1e9, 1e9, "any number"}},
 }};
 
-constexpr std::array<Field<MaterialDesc>, 15> material_fields{{
+constexpr std::array<Field<MaterialDesc>, 18> material_fields{{
     {"linear_density", &MaterialDesc::linear_density, "kg/m", positive, true},
     {"radius", &MaterialDesc::radius, "m", positive, true},
     {"axial_stiffness", &MaterialDesc::axial_stiffness, "N", positive_or_infinite},
@@ -97,6 +97,9 @@ constexpr std::array<Field<MaterialDesc>, 15> material_fields{{
     {"maximum_tension", &MaterialDesc::maximum_tension, "N", positive_or_infinite},
     {"transverse_stiffness", &MaterialDesc::transverse_stiffness, "N/m^2", positive_or_infinite},
     {"maximum_squeeze", &MaterialDesc::maximum_squeeze, "N/m", positive_or_infinite},
+    {"yield_curvature", &MaterialDesc::yield_curvature, "1/m", positive_or_infinite},
+    {"hardening", &MaterialDesc::hardening, "", {0, 1, "any number from 0 to 1"}},
+    {"bending_friction", &MaterialDesc::bending_friction, "N m", not_negative},
 }};
 
 constexpr Field<MaterialDesc, BendingStiffness> bending_stiffness_field{"bending_stiffness", &MaterialDesc::bending_stiffness,

@@ -21,6 +21,9 @@ int zero_like(int) {
 Vector3 zero_like(const Vector3&) {
   return Vector3::Zero();
 }
+std::array<HalfBend, 2> zero_like(const std::array<HalfBend, 2>&) {
+  return {};
+}
 
 template <class Array>
 void extend(const Array& tail, Array& array) {
@@ -69,6 +72,7 @@ void append(const CableState& tail, CableState& cable) {
   extend_where_needed(tail.section_material, tail_segments, segments, 0, cable.section_material);
   extend_where_needed(tail.spin, tail_segments, segments, 0.0, cable.spin);
   extend_where_needed<Vector3>(tail.directors, tail_segments, segments, Vector3::Zero(), cable.directors);
+  extend_where_needed(tail.bending_memory, tail_segments, segments, {}, cable.bending_memory);
   extend(tail.rest_lengths, cable.rest_lengths);
   extend(tail.tension, cable.tension);
   extend(tail.last_tension, cable.last_tension);

@@ -31,6 +31,7 @@ void visit_segment_arrays(Cable& cable, const Visitor& visitor) {
   if (!cable.section_material.empty()) visitor(cable.section_material);
   if (!cable.spin.empty()) visitor(cable.spin);
   if (!cable.directors.empty()) visitor(cable.directors);
+  if (!cable.bending_memory.empty()) visitor(cable.bending_memory);
 }
 /// @}
 

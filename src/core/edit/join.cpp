@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "chain/node_arrays.h"
+#include "rod/bending_memory.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
 #include "scene/scene_errors.h"
@@ -45,6 +46,13 @@ void reverse(CableState& cable) {
   reverse_arrays(cable);
   for (auto& curvature : cable.rest_curvature) curvature[0] = -curvature[0];
   for (double& spin : cable.spin) spin = -spin;
+  for (auto& halves : cable.bending_memory) {
+    std::swap(halves.front(), halves.back());
+    for (HalfBend& half : halves) {
+      half.yielded[0] = -half.yielded[0];
+      half.slipped[0] = -half.slipped[0];
+    }
+  }
   cable.reference_node = cable.segments() - cable.reference_node;
   cable.reference_orientation = cable.reference_orientation * turned;
 }
@@ -58,8 +66,21 @@ double join_rest_shapes(int node, CableState& cable) {
     for (const int i : {node, gone}) excess += cable.joint_twist[i] - rest_angles(cable, i, joint_length(cable, i)).twist;
     twist = cable.joint_twist[node] += cable.joint_twist[gone];
   }
-  if (cable.rest_curvature.empty()) return excess;
   const double cosine = std::cos(0.5 * twist), sine = std::sin(0.5 * twist);
+  if (!cable.bending_memory.empty() && node > 0 && gone < cable.segments()) {
+    // What has been bent for good stays so, seen from the joint.
+    const auto turned_by = [cosine](double sine, const HalfBend& half) {
+      const auto turn = [&](const std::array<double, 2>& bend) {
+        return std::array<double, 2>{cosine * bend[0] + sine * bend[1], cosine * bend[1] - sine * bend[0]};
+      };
+      return HalfBend{turn(half.yielded), turn(half.slipped)};
+    };
+    const auto& [to_between, from_between] = cable.bending_memory[node];
+    HalfBend &before = cable.bending_memory[node - 1].back(), &after = cable.bending_memory[gone].front();
+    before = turned_by(sine, sum_of({{1, before}, {1, to_between}}));
+    after = turned_by(-sine, sum_of({{1, from_between}, {1, after}}));
+  }
+  if (cable.rest_curvature.empty()) return excess;
   const auto [before_y, before_z] = cable.rest_curvature[node];
   const auto [after_y, after_z] = cable.rest_curvature[gone];
   cable.rest_curvature[node] = {0.5 * (cosine * (before_y + after_y) + sine * (before_z - after_z)),

@@ -289,6 +289,7 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
     std::fill(cable.accelerations.begin(), cable.accelerations.end(), Vector3::Zero());
     cable.yielding = cable.taut_energy = 0;
     after_remeshing(index);
+    yield_to_shape(index);
     move_with_holders(index, state);
   }
   return {true, "", ""};

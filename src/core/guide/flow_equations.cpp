@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "rod/bending_memory.h"
 #include "rod/cable_stepper.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -539,6 +540,12 @@ void CableStepper::carry_frames_with_flows(CableState& state) const {
     }
     if (!state.rest_curvature.empty()) flow_on(flow, state.rest_lengths, state.rest_curvature);
     if (!state.rest_twist.empty()) flow_on(flow, state.rest_lengths, state.rest_twist);
+    if (state.bending_memory.empty()) continue;
+    const int border = 2 * flow.before + 1;
+    if (flow.first == flow.last)
+      carry_bends(border, {0.5 * flow.way, flow.way, 0.5 * flow.way}, state);
+    else
+      carry_bends(border, {0.5 * flow.way, flow.way, flow.way, flow.way, 0.5 * flow.way}, state);
   }
 }
 

@@ -33,11 +33,12 @@ int find_material(const CableModel& model, const std::string& name) {
 }
 
 bool is_whole_rod(const CableModel& model, const CableState& state) {
+  if (!state.bending_memory.empty()) return true;
   return CableMaterials(model, state).any([&](const MaterialDesc& material) {
     const BendingStiffness& stiffness = material.bending_stiffness;
     // What damps bending passes a moment about the cable on, which does work where the cable is twisted.
     const bool damps_twisted = model.is_twisted && material.torsional_stiffness > 0 && material.bending_damping > 0;
-    return !stiffness.is_isotropic() ||
+    return !stiffness.is_isotropic() || material.remembers_bending() ||
            (stiffness.largest() > 0 && (model.turns_bodies || damps_twisted || !state.rest_curvature.empty())) ||
            (material.torsional_stiffness > 0 && !state.rest_twist.empty());
   });

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "rod/bending_memory.h"
 #include "rod/joint_material.h"
 #include "rod/rod_frames.h"
 #include "rod/substep.h"
@@ -13,6 +14,12 @@ namespace {
 
 /// In statics a twist increment meets at least this part of a joint's resistance: a rod between hinges may be free to spin.
 constexpr double least_static_resistance = 1e-9;
+
+/// [N m^2] See joint_material().
+double resistance_to_twist(const MaterialDesc& material) {
+  const bool as_bent = material.torsional_stiffness == 0 && material.remembers_bending();
+  return as_bent ? material.bending_stiffness.smallest() : material.torsional_stiffness;
+}
 
 /// About the tangent, of a round section [kg m]
 double section_inertia(const MaterialDesc& material) {
@@ -33,10 +40,37 @@ double clamp_twist(const CableState& state, const HeldDirection& direction, int 
   return after ? direction.twist_after : direction.twist_before;
 }
 
+/// What the joint at a node between two segments has of their halves, and one between a clamp and a segment of its half.
+HalfBend memory_at(const CableState& state, int node) {
+  if (state.bending_memory.empty()) return {};
+  return sum_of({{1, state.bending_memory[node - 1].back()}, {1, state.bending_memory[node].front()}});
+}
+HalfBend memory_beside_clamp(const CableState& state, int segment, bool after) {
+  return state.bending_memory.empty() ? HalfBend{} : state.bending_memory[segment][after ? 0 : 1];
+}
+
+void add_slid(double share, const HalfBend& slid, HalfBend& half) {
+  half = sum_of({{1, half}, {share, slid}});
+}
+
+HalfBend slid_of(const AboutAxes& yielded, const AboutAxes& slipped) {
+  return {{yielded.y, yielded.z}, {slipped.y, slipped.z}};
+}
+
+/// By the lengths of the halves at a node between two segments.
+void add_slid_at(int node, const HalfBend& slid, CableState& state) {
+  const double before = state.rest_lengths[node - 1], part = before / (before + state.rest_lengths[node]);
+  add_slid(part, slid, state.bending_memory[node - 1].back());
+  add_slid(1 - part, slid, state.bending_memory[node].front());
+}
+
+/// Strands that stick to each other resist bending by so many times what they do when they slip.
+constexpr double sticking = 10;
+
 /// `around` [m]: the cable that the joint stands for.
 JointStiffness joint_stiffness(const JointMaterial& material, const CableState& state, int node, double around,
-                               double damping_time) {
-  const double per_length = 1 / state.bending_length(node, around);
+                               double damping_time, const HalfBend& memory) {
+  const double length = state.bending_length(node, around), per_length = 1 / length;
   JointStiffness stiffness;
   stiffness.twist = material.torsional_stiffness * per_length;
   stiffness.bend_y = material.bending_stiffness[0] * per_length;
@@ -44,7 +78,25 @@ JointStiffness joint_stiffness(const JointMaterial& material, const CableState& 
   stiffness.twist_damping = material.torsional_damping / damping_time * per_length;
   stiffness.bend_damping = material.bending_damping / damping_time * per_length;
   stiffness.rest = rest_angles(state, node, around);
+  if (state.bending_memory.empty()) return stiffness;
+  const double yields = 1 - material.hardening;
+  stiffness.yielding = {yields * stiffness.bend_y,
+                        yields * stiffness.bend_z,
+                        material.yield_curvature * length,
+                        {memory.yielded[0], memory.yielded[1]}};
+  const double stuck = sticking * material.bending_stiffness.smallest();
+  if (material.bending_friction > 0 && stuck > 0)
+    stiffness.friction = {stuck * per_length,
+                          stuck * per_length,
+                          material.bending_friction / stuck * length,
+                          {memory.slipped[0], memory.slipped[1]}};
   return stiffness;
+}
+
+/// A wheel gives the cable its shape: no bending moment leaves it.
+void let_bend(JointStiffness& stiffness) {
+  stiffness.bend_y = stiffness.bend_z = stiffness.bend_damping = 0;
+  stiffness.yielding = stiffness.friction = {};
 }
 
 /// How much of the way of a flow from segment `before` to segment `after` the joint at a node gains.
@@ -59,8 +111,37 @@ double energy_slope(const JointStiffness& stiffness, const JointAngles& angles, 
     const double scale = end / start, strained = angle - scale * rest;
     return -0.5 * resistance / end * strained * (strained + 2 * scale * rest);
   };
-  return slope(stiffness.twist, angles.twist, stiffness.rest.twist) + slope(stiffness.bend_y, angles.y, stiffness.rest.y) +
-         slope(stiffness.bend_z, angles.z, stiffness.rest.z);
+  const auto bent = [&](double y_resistance, double z_resistance, const AboutAxes& angle) {
+    return slope(y_resistance, angle.y, stiffness.rest.y) + slope(z_resistance, angle.z, stiffness.rest.z);
+  };
+  const AboutAxes angle{angles.y, angles.z};
+  const SlidingSpring &yielding = stiffness.yielding, &friction = stiffness.friction;
+  return slope(stiffness.twist, angles.twist, stiffness.rest.twist) +
+         bent(stiffness.bend_y - yielding.y_stiffness, stiffness.bend_z - yielding.z_stiffness, angle) +
+         bent(yielding.y_stiffness, yielding.z_stiffness, angle - yielding.slid) +
+         bent(friction.y_stiffness, friction.z_stiffness, angle - friction.slid);
+}
+
+/// Calls visitor(stiffness, angles, node, segment, whether the segment comes after the clamp) for every joint of a whole rod,
+/// which is between two segments where `segment` is negative.
+template <class Visitor>
+void visit_rod_joints(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
+                      const Visitor& visitor) {
+  const int n = state.segments();
+  const CableMaterials materials(model, state);
+  for (int i = 1; i < n; ++i) {
+    if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
+    visitor(joint_stiffness(joint_material(materials, state, i), state, i, joint_length(state, i), infinity, memory_at(state, i)),
+            joint_angles_at(state, i), i, -1, false);
+  }
+  visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
+    const HeldDirection& held = directions[target];
+    const double twist = clamp_twist(state, held, n, after);
+    const Eigen::Matrix3d beside = segment_frame(state, segment), clamp = held.end.toRotationMatrix();
+    visitor(joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment], infinity,
+                            memory_beside_clamp(state, segment, after)),
+            after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist), held.node, segment, after);
+  });
 }
 
 }  // namespace
@@ -83,6 +164,9 @@ void KirchhoffRod::start(const CableModel& model, const CableState& state, const
   active_ = true;
   elastic_ = CableMaterials(model, state).any_elastic();
   simplified_ = false;
+  slides_ = !state.bending_memory.empty();
+  joints_.let_slide(slides_, damping_time == infinity);
+  clamp_joints_.let_slide(slides_, damping_time == infinity);
   h_ = h;
   part_ = part;
   is_static_ = damping_time == infinity;
@@ -102,7 +186,7 @@ void KirchhoffRod::start_segments(const CableModel& model, const CableState& sta
     inertia_[i] = moment * state.rest_lengths[i];
     if (is_static_)
       inertia_[i] =
-          std::max(inertia_[i], h_ * h_ * least_static_resistance * materials[i].torsional_stiffness / state.rest_lengths[i]);
+          std::max(inertia_[i], h_ * h_ * least_static_resistance * resistance_to_twist(materials[i]) / state.rest_lengths[i]);
     spin_[i] = is_static_ ? 0 : state.spin[i];
     tau_[i] = h_ * spin_[i];
   }
@@ -124,18 +208,19 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
   JointMaterial material(model.material);
   changing_.clear();
   for (int i = 1; i < n; ++i) {
-    if (materials.vary()) material = joint_material(materials, state, i);
+    if (materials.vary() || slides_) material = joint_material(materials, state, i);
     const double length = joint_length(state, i);
-    JointStiffness stiffness = joint_stiffness(material, state, i, length, damping_time);
-    // A wheel gives the cable its shape: no bending moment leaves it.
+    JointStiffness stiffness = joint_stiffness(material, state, i, length, damping_time, memory_at(state, i));
     for (const GuidedFlow& flow : boundary.flows)
-      if (flow.first != flow.last && (i == flow.first || i == flow.last))
-        stiffness.bend_y = stiffness.bend_z = stiffness.bend_damping = 0;
+      if (flow.first != flow.last && (i == flow.first || i == flow.last)) let_bend(stiffness);
     joints_.set(i, stiffness, state.joint_twist[i]);
     for (const GuidedFlow& flow : boundary.flows)
       if (flow.first - 1 <= i && i <= flow.last + 1 && (changing_.empty() || changing_.back().node != i))
-        changing_.push_back({i, length, length, stiffness});
+        changing_.push_back({i, length, length, stiffness, 0, {}, {}});
   }
+  for (const GuidedFlow& flow : boundary.flows)
+    for (ChangingJoint& joint : changing_)
+      if (slides_) find_brought(flow, state, joint);
   for (const HeldDirection& direction : boundary.directions) {
     if (direction.node <= 0 || direction.node >= n) continue;
     joints_.set(direction.node, {}, 0);
@@ -143,6 +228,19 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
       if (joint.node == direction.node) joint.stiffness = {};
   }
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
+}
+
+/// Over the middles of the segments beside a guide; at its wheel no bending moment resists.
+void KirchhoffRod::find_brought(const GuidedFlow& flow, const CableState& state, ChangingJoint& joint) {
+  const int before = flow.first - 1, after = flow.last;
+  for (const double way : {-1.0, 1.0}) {
+    HalfBend& brought = way > 0 ? joint.forward : joint.backward;
+    const auto add = [&](double share, int segment) { add_slid(share, bends_at_border(2 * segment + 1, way, state), brought); };
+    if (joint.node == before) add(-0.5, before);
+    if (joint.node == before + 1) add(0.5, before);
+    if (joint.node == after) add(-0.5, after);
+    if (joint.node == after + 1) add(0.5, after);
+  }
 }
 
 void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
@@ -167,10 +265,10 @@ void KirchhoffRod::start_clamps(const CableModel& model, const CableState& state
     set(of_clamp.end, joint, end);
     set(of_clamp.middle, joint, start + part_ * (end - start));
     set(of_segment.start, joint, get(frames_.start, segment));
-    clamp_joints_.set(
-        joint,
-        joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment], damping_time),
-        clamp_twist(state, held, segments_, after));
+    clamp_joints_.set(joint,
+                      joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment],
+                                      damping_time, memory_beside_clamp(state, segment, after)),
+                      clamp_twist(state, held, segments_, after));
   });
   clamp_joints_.start(clamp_before_.start, 0, clamp_after_.start, 0, 0, static_cast<int>(count));
 }
@@ -187,18 +285,26 @@ void KirchhoffRod::follow_clamps(const Boundary& boundary) {
 }
 
 void KirchhoffRod::forget_flows() {
-  for (ChangingJoint& joint : changing_) joint.end = joint.start;
+  for (ChangingJoint& joint : changing_) {
+    joint.end = joint.start;
+    joint.way = 0;
+  }
 }
 
 void KirchhoffRod::add_flow(int before, int after, double way) {
   for (ChangingJoint& joint : changing_) {
     const double share = share_of_flow(before, after, joint.node);
+    if (before <= joint.node && joint.node <= after + 1) joint.way = way;
     if (share == 0) continue;
     joint.end += share * way;
     const double scale = part_ == 1 ? joint.start / joint.end : 0.5 * (1 + joint.start / joint.end);
     JointStiffness stiffness = joint.stiffness;
-    for (double* value : {&stiffness.twist, &stiffness.bend_y, &stiffness.bend_z}) *value *= scale;
-    for (double* value : {&stiffness.rest.twist, &stiffness.rest.y, &stiffness.rest.z}) *value /= scale;
+    SlidingSpring &yielding = stiffness.yielding, &friction = stiffness.friction;
+    for (double* value : {&stiffness.twist, &stiffness.bend_y, &stiffness.bend_z, &yielding.y_stiffness, &yielding.z_stiffness,
+                          &friction.y_stiffness, &friction.z_stiffness})
+      *value *= scale;
+    for (double* value : {&stiffness.rest.twist, &stiffness.rest.y, &stiffness.rest.z, &yielding.limit, &friction.limit})
+      *value /= scale;
     joints_.set_stiffness(joint.node, stiffness);
   }
 }
@@ -206,6 +312,7 @@ void KirchhoffRod::add_flow(int before, int after, double way) {
 double KirchhoffRod::flow_force(int before, int after) const {
   double force = 0;
   for (const ChangingJoint& joint : changing_) {
+    if (slides_ && before <= joint.node && joint.node <= after + 1) force += force_of_brought(joint);
     const double share = share_of_flow(before, after, joint.node);
     if (share == 0) continue;
     const int i = joint.node;
@@ -220,6 +327,22 @@ double KirchhoffRod::flow_force(int before, int after) const {
     force -= share * 0.5 * (energy_slope(joint.stiffness, start, joint.start, joint.end) + at_end);
   }
   return force;
+}
+
+/// [N] With which what a joint remembers drives a flow that takes it along.
+double KirchhoffRod::force_of_brought(const ChangingJoint& joint) const {
+  const int i = joint.node;
+  const HalfBend brought = joint.way == 0  ? sum_of({{0.5, joint.backward}, {0.5, joint.forward}})
+                           : joint.way > 0 ? joint.forward
+                                           : joint.backward;
+  const JointAngles start = joint_angles(get(frames_.start, i - 1), get(frames_.start, i), joints_.start_twist(i));
+  const JointAngles end = joint_angles(get(frames_.end, i - 1), get(frames_.end, i), joints_.start_twist(i));
+  const auto force = [&](const SlidingSpring& spring, const std::array<double, 2>& slid) {
+    const AboutAxes before = strain_of(spring, joint.stiffness.rest, start);
+    const AboutAxes after = spring.slide(strain_of(spring, joint.stiffness.rest, end)).strain;
+    return dot(spring.moment(before + part_ * (after - before)), {slid[0], slid[1]});
+  };
+  return force(joint.stiffness.yielding, brought.yielded) + force(joint.stiffness.friction, brought.slipped);
 }
 
 /// The frames at the end of the present iterate.
@@ -374,6 +497,7 @@ void KirchhoffRod::add_losses(EnergyBalance& balance) const {
     for (int i = first; i < last; ++i) {
       balance.dissipated.bending += joints.bending_loss[i];
       balance.dissipated.torsional += joints.twisting_loss[i];
+      if (slides_) balance.dissipated.yielding += joints.sliding_loss[i];
     }
   };
   add(joints_, 1, segments_);
@@ -390,6 +514,17 @@ void KirchhoffRod::store(const Boundary& boundary, CableState& state) const {
   for (const HeldDirection& direction : boundary.directions) {
     const bool at_end = direction.node == segments_;
     state.joint_twist[direction.node] = at_end ? direction.twist_before : direction.node == 0 ? direction.twist_after : 0;
+  }
+  // On its way to an equilibrium nothing yields for good: the way is one of the solver's, not of the cable.
+  if (slides_ && !is_static_) store_memory(state);
+}
+
+void KirchhoffRod::store_memory(CableState& state) const {
+  for (int i = 1; i < segments_; ++i) add_slid_at(i, slid_of(joints_.yielded(i), joints_.slipped(i)), state);
+  for (std::size_t k = 0; k < clamps_.size(); ++k) {
+    const int joint = static_cast<int>(k);
+    HalfBend& half = state.bending_memory[clamps_[k].segment][clamps_[k].after ? 0 : 1];
+    add_slid(1, slid_of(clamp_joints_.yielded(joint), clamp_joints_.slipped(joint)), half);
   }
 }
 
@@ -438,29 +573,49 @@ void KirchhoffRod::set_stiffness(const VectorArray& direction, bool simple) {
 
 RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                      const std::vector<int>& shaped) {
-  const int n = state.segments();
   const CableMaterials materials(model, state);
   RodEnergy sum;
-  const auto add = [&](const JointStiffness& stiffness, const JointAngles& angles, bool bends = true) {
-    const JointEnergy energy = joint_energy(stiffness, angles);
-    if (bends) sum.bend += energy.bend;
-    sum.twist += energy.twist;
-  };
-  for (int i = 1; i < n; ++i) {
-    if (std::any_of(directions.begin(), directions.end(), [i](const HeldDirection& d) { return d.node == i; })) continue;
-    add(joint_stiffness(joint_material(materials, state, i), state, i, joint_length(state, i), infinity),
-        joint_angles_at(state, i), std::find(shaped.begin(), shaped.end(), i) == shaped.end());
-  }
-  visit_clamp_joints(directions, n, [&](std::size_t target, int segment, bool after) {
-    const HeldDirection& held = directions[target];
-    const double twist = clamp_twist(state, held, n, after);
-    const Eigen::Matrix3d beside = segment_frame(state, segment), clamp = held.end.toRotationMatrix();
-    add(joint_stiffness(JointMaterial(materials[segment]), state, held.node, 0.5 * state.rest_lengths[segment], infinity),
-        after ? joint_angles(clamp, beside, twist) : joint_angles(beside, clamp, twist));
-  });
-  for (int i = 0; i < n; ++i)
+  visit_rod_joints(model, state, directions,
+                   [&](const JointStiffness& stiffness, const JointAngles& angles, int node, int segment, bool) {
+                     const JointEnergy energy = joint_energy(stiffness, angles);
+                     const bool bends = segment >= 0 || std::find(shaped.begin(), shaped.end(), node) == shaped.end();
+                     if (bends) sum.bend += energy.bend;
+                     sum.twist += energy.twist;
+                   });
+  for (int i = 0; i < state.segments(); ++i)
     sum.spin += 0.5 * section_inertia(materials[i]) * state.rest_lengths[i] * state.spin[i] * state.spin[i];
   return sum;
+}
+
+void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, CableState& state) {
+  if (state.bending_memory.empty() || state.directors.empty()) return;
+  visit_rod_joints(model, state, directions,
+                   [&](const JointStiffness& stiffness, const JointAngles& angles, int node, int segment, bool after) {
+                     const auto slid = [&](const SlidingSpring& spring) {
+                       const AboutAxes strain = strain_of(spring, stiffness.rest, angles);
+                       return strain - spring.slide(strain).strain;
+                     };
+                     const HalfBend more = slid_of(slid(stiffness.yielding), slid(stiffness.friction));
+                     if (segment < 0)
+                       add_slid_at(node, more, state);
+                     else
+                       add_slid(1, more, state.bending_memory[segment][after ? 0 : 1]);
+                   });
+}
+
+std::vector<double> plastic_curvature(const SimulatedCable& cable) {
+  const CableState& state = cable.state;
+  const CableMaterials materials(cable);
+  std::vector<double> curvature;
+  if (state.bending_memory.empty() ||
+      !materials.any([](const MaterialDesc& m) { return m.yield_curvature < infinity && m.hardening < 1; }))
+    return curvature;
+  for (int i = 1; i < state.segments(); ++i) {
+    const auto [y, z] = memory_at(state, i).yielded;
+    const double length = state.bending_length(i, joint_length(state, i));
+    curvature.push_back((1 - joint_material(materials, state, i).hardening) * std::hypot(y, z) / length);
+  }
+  return curvature;
 }
 
 }  // namespace verlet_cable

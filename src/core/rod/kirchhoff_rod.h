@@ -84,8 +84,10 @@ class KirchhoffRod {
   /// A joint beside a segment whose rest length changes in the substep.
   struct ChangingJoint {
     int node = 0;
-    double start = 0, end = 0;  ///< [m] that it stands for
-    JointStiffness stiffness;   ///< at the start
+    double start = 0, end = 0;   ///< [m] that it stands for
+    JointStiffness stiffness;    ///< at the start
+    double way = 0;              ///< [m] of the flow that changes it
+    HalfBend backward, forward;  ///< [rad/m] what a way of material towards the cable's start, or its end, brings it
   };
 
   void start_segments(const CableModel& model, const CableState& state, const VectorArray& segment);
@@ -93,13 +95,17 @@ class KirchhoffRod {
   void start_clamps(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                     double damping_time);
   void turn_frames(const VectorArray& displacement, const VectorArray& segment);
+  static void find_brought(const GuidedFlow& flow, const CableState& state, ChangingJoint& joint);
+  double force_of_brought(const ChangingJoint& joint) const;
   void set_clamp_frames();
+  void store_memory(CableState& state) const;
   Vector3 turned_by_clamp(const ClampJoint& clamp, int joint, const Vector3& rotation) const;
   void set_stiffness(const VectorArray& direction, bool simple);
 
   bool active_ = false;
   bool elastic_ = false;
   bool simplified_ = false;
+  bool slides_ = false;  // what its joints remember changes as they are bent
   int segments_ = 0;
   bool is_static_ = false;
   double h_ = 0, part_ = 0.5;
@@ -129,5 +135,9 @@ struct RodEnergy {
 /// `shaped`: nodes on wheels, at which no bending moment resists.
 RodEnergy rod_energy(const CableModel& model, const CableState& state, const std::vector<HeldDirection>& directions,
                      const std::vector<int>& shaped);
+
+/// Lets a whole rod that was given its shape at once, and not by motion, yield as far as it does in that shape. Its clamps hold
+/// `directions` at their ends.
+void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, CableState& state);
 
 }  // namespace verlet_cable

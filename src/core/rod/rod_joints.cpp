@@ -125,7 +125,15 @@ JointAngles joint_angles(const Eigen::Matrix3d& before, const Eigen::Matrix3d& a
 JointEnergy joint_energy(const JointStiffness& stiffness, const JointAngles& angles) {
   const double twist = angles.twist - stiffness.rest.twist, y = angles.y - stiffness.rest.y, z = angles.z - stiffness.rest.z;
   const auto energy = [](double resistance, double strain) { return Resistance<double>{resistance, 0}.energy(strain); };
-  return {energy(stiffness.bend_y, y) + energy(stiffness.bend_z, z), energy(stiffness.twist, twist)};
+  JointEnergy sum{energy(stiffness.bend_y, y) + energy(stiffness.bend_z, z), energy(stiffness.twist, twist)};
+  for (const SlidingSpring* spring : {&stiffness.yielding, &stiffness.friction})
+    sum.bend += spring->energy(strain_of(*spring, stiffness.rest, angles));
+  sum.bend -= stiffness.yielding.energy({y, z});
+  return sum;
+}
+
+AboutAxes strain_of(const SlidingSpring& spring, const JointAngles& rest, const JointAngles& angles) {
+  return AboutAxes{angles.y - rest.y, angles.z - rest.z} - spring.slid;
 }
 
 void RodJoints::resize(int count) {
@@ -136,6 +144,9 @@ void RodJoints::resize(int count) {
     a->assign(size, 0.0);
   bending_loss.assign(size, 0.0);
   twisting_loss.assign(size, 0.0);
+  sliding_loss.assign(size, 0.0);
+  for (std::vector<SlidingSpring>* springs : {&yielding_, &friction_}) springs->assign(size, {});
+  for (std::vector<AboutAxes>* slid : {&end_yielded_, &end_slipped_}) slid->assign(size, {});
   moment.assign(size, 0.0);
   convex_stiffness.assign(size, 0.0);
   exact_stiffness.assign(size, 0.0);
@@ -155,6 +166,9 @@ void RodJoints::set_stiffness(int joint, const JointStiffness& stiffness) {
   rest_twist_[joint] = stiffness.rest.twist;
   rest_y_[joint] = stiffness.rest.y;
   rest_z_[joint] = stiffness.rest.z;
+  if (!slides_) return;
+  yielding_[joint] = stiffness.yielding;
+  friction_[joint] = stiffness.friction;
 }
 
 void RodJoints::start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
@@ -178,8 +192,50 @@ void RodJoints::start(const FrameArrays& frames_before, int before, const FrameA
   }
 }
 
+/// What springs that slide add to moments and stiffnesses over the substep.
+struct RodJoints::Slid {
+  AboutAxes moment;               ///< [N m]
+  double yy = 0, yz = 0, zz = 0;  ///< [N m / rad]
+};
+
+/// `start` [rad]: the joint's angles beyond those at rest; `change`: of them, over the substep.
+RodJoints::Slid RodJoints::slide(int joint, double part, const AboutAxes& start, const AboutAxes& change) {
+  Slid sum;
+  sliding_loss[joint] = 0;
+  const auto add = [&](const SlidingSpring& spring, AboutAxes& end_slid) {
+    // What was bent at once, not by motion, slides before it moves on.
+    const AboutAxes found = start - spring.slid, before = slides_from_memory_ ? found : spring.slide(found).strain;
+    const AboutAxes tried = before + change;
+    const Slide after = spring.slide(tried);
+    const AboutAxes slid = tried - after.strain, moment = spring.moment(before + part * (after.strain - before));
+    end_slid = spring.slid + (found - before) + slid;
+    sliding_loss[joint] += spring.energy(found) - spring.energy(before) + dot(moment, slid);
+    sum.moment = sum.moment + moment;
+    sum.yy += part * after.yy;
+    sum.yz += part * after.yz;
+    sum.zz += part * after.zz;
+  };
+  const SlidingSpring& yielding = yielding_[joint];
+  add(yielding, end_yielded_[joint]);
+  add(friction_[joint], end_slipped_[joint]);
+  // What yields is a part of the joint's bending stiffness.
+  sum.moment = sum.moment - yielding.moment(start + part * change);
+  sum.yy -= part * yielding.y_stiffness;
+  sum.zz -= part * yielding.z_stiffness;
+  return sum;
+}
+
 void RodJoints::evaluate(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
                          int first, int last) {
+  if (slides_)
+    evaluate_joints<true>(part, frames_before, before, frames_after, after, first, last);
+  else
+    evaluate_joints<false>(part, frames_before, before, frames_after, after, first, last);
+}
+
+template <bool slides>
+void RodJoints::evaluate_joints(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after,
+                                int after, int first, int last) {
   for (int i = first, k = 0; i < last; i += 2, k += 2) {
     const Products end = products(neighbours(frames_before.end, before + k), neighbours(frames_after.end, after + k));
     Products start{neighbours(u_, i), neighbours(y_, i), neighbours(z_, i), neighbours(sine_, i), neighbours(cosine_, i)};
@@ -200,6 +256,19 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
         end_chi * (end_half_cosine * end.y + end_half_sine * end.z) - start_chi * (half_cosine * start.y + half_sine * start.z);
     const Pair angle_change_z =
         end_chi * (end_half_cosine * end.z - end_half_sine * end.y) - start_chi * (half_cosine * start.z - half_sine * start.y);
+    Pair slid_y{}, slid_z{}, slid_yy{}, slid_yz{}, slid_zz{};
+    if constexpr (slides) {
+      const Pair strain_y = start_chi * (half_cosine * start.y + half_sine * start.z) - neighbours(rest_y_, i);
+      const Pair strain_z = start_chi * (half_cosine * start.z - half_sine * start.y) - neighbours(rest_z_, i);
+      for (int lane = 0; lane < 2; ++lane) {
+        const Slid slid = slide(i + lane, part, {strain_y[lane], strain_z[lane]}, {angle_change_y[lane], angle_change_z[lane]});
+        slid_y[lane] = slid.moment.y;
+        slid_z[lane] = slid.moment.z;
+        slid_yy[lane] = slid.yy;
+        slid_yz[lane] = slid.yz;
+        slid_zz[lane] = slid.zz;
+      }
+    }
     if (part == 1) {
       // Forces are those of the end: quotients of differences become derivatives.
       start = end;
@@ -241,10 +310,14 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     const Resistance<Pair> of_twist{neighbours(twist_stiffness_, i), neighbours(twist_damping_, i)};
     const Resistance<Pair> beyond_y{y_stiffness - isotropic, damping}, beyond_z{z_stiffness - isotropic, damping};
     const Pair twist_moment = of_twist.stress(start_twist + part * change.angle - neighbours(rest_twist_, i), change.angle);
-    const Pair y_moment =
+    Pair y_moment =
         beyond_y.stress(0.5 * (start_chi * start_y + end_chi * end_y), angle_change_y) - y_stiffness * neighbours(rest_y_, i);
-    const Pair z_moment =
+    Pair z_moment =
         beyond_z.stress(0.5 * (start_chi * start_z + end_chi * end_z), angle_change_z) - z_stiffness * neighbours(rest_z_, i);
+    if constexpr (slides) {
+      y_moment += slid_y;
+      z_moment += slid_z;
+    }
     put(of_y.loss(angle_change_y) + of_z.loss(angle_change_z), bending_loss, i);
     put(of_twist.loss(change.angle), twisting_loss, i);
     put(twist_moment * twist_gradient + (y_moment * y_gradient + z_moment * z_gradient) -
@@ -255,6 +328,12 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     stiff = plus_outer(stiff, of_twist.slope(part), twist_gradient);
     stiff = plus_outer(stiff, of_y.slope(part), y_gradient);
     stiff = plus_outer(stiff, of_z.slope(part), z_gradient);
+    const auto add_slid = [&](PairSymmetric& sum) {
+      sum = plus_outer(sum, slid_yy, y_gradient);
+      sum = plus_outer(sum, slid_zz, z_gradient);
+      sum = plus_both(sum, (2.0 * slid_yz) * y_gradient, z_gradient);
+    };
+    if constexpr (slides) add_slid(stiff);
     put(stiff, convex_stiffness, i);
     if (part != 1) continue;
 
@@ -269,6 +348,7 @@ void RodJoints::evaluate(double part, const FrameMotion& frames_before, int befo
     exact = plus_outer(exact, of_twist.slope(1) - 0.25 * end_chi * along, twist_gradient);
     exact = plus_outer(exact, beyond_y.slope(1), y_gradient);
     exact = plus_outer(exact, beyond_z.slope(1), z_gradient);
+    if constexpr (slides) add_slid(exact);
     exact =
         plus_outer(exact, isotropic * angle_energy_curvature(end.u) + chi_curvature(end.u, end_chi, chi_slope) * along, about_x);
     exact = plus_both(exact, -2.0 * chi_slope * bent - of_twist_and_bend * twist_gradient, about_x);

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "geometry/vector_array.h"
+#include "law/sliding_spring.h"
 #include "rod/pair.h"
 
 namespace verlet_cable {
@@ -65,7 +66,12 @@ struct JointStiffness {
   double twist = 0, bend_y = 0, bend_z = 0;    ///< GJ and EI over the length of cable that it stands for
   double twist_damping = 0, bend_damping = 0;  ///< over length and time of the substep
   JointAngles rest;
+  SlidingSpring yielding;  ///< what of bending yields: a part of `bend_y` and `bend_z`
+  SlidingSpring friction;  ///< between strands: beyond them
 };
+
+/// [rad] What a spring that slides is bent by, unless it slides on.
+AboutAxes strain_of(const SlidingSpring& spring, const JointAngles& rest, const JointAngles& angles);
 
 struct JointEnergy {
   double bend = 0, twist = 0;  ///< [J]
@@ -81,6 +87,12 @@ JointEnergy joint_energy(const JointStiffness& stiffness, const JointAngles& ang
 class RodJoints {
  public:
   void resize(int count);
+  /// Whether any of them has springs that slide; before `set`. `from_memory`: in statics, which take one step from what they
+  /// remember to the equilibrium, whatever way their iterations go.
+  void let_slide(bool slides, bool from_memory) {
+    slides_ = slides;
+    slides_from_memory_ = from_memory;
+  }
   void set(int joint, const JointStiffness& stiffness, double twist);
   void set_stiffness(int joint, const JointStiffness& stiffness);
   /// Finds the angles at the start. `before`, `after`: index of the first joint's frames; joints `first` to `last` (exclusive).
@@ -94,8 +106,12 @@ class RodJoints {
   const SymmetricArray& stiffness() const { return is_exact_ ? exact_stiffness : convex_stiffness; }
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
+  /// [rad] By which springs have slid over the substep.
+  AboutAxes yielded(int joint) const { return end_yielded_[joint] - yielding_[joint].slid; }
+  AboutAxes slipped(int joint) const { return end_slipped_[joint] - friction_[joint].slid; }
 
   std::vector<double> bending_loss, twisting_loss;  ///< [J] what damping takes in the substep
+  std::vector<double> sliding_loss;                 ///< [J] and what springs that slide do; not set where none does
   VectorArray moment;                               ///< [N m] on the frame before
   /// [N m] Of the moment against rotations, without what turns with the frames: the part of it that is never negative (Gauss and
   /// Newton's), and, where forces are taken at the end, the second derivative of the energy by the rotation of the frame after
@@ -103,7 +119,14 @@ class RodJoints {
   SymmetricArray convex_stiffness, exact_stiffness;
 
  private:
+  template <bool slides>
+  void evaluate_joints(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
+                       int first, int last);
+  struct Slid;
+  Slid slide(int joint, double part, const AboutAxes& start, const AboutAxes& change);
+
   bool is_exact_ = false;
+  bool slides_ = false, slides_from_memory_ = false;
   // Over the substep; [N m]
   std::vector<double> twist_stiffness_, y_stiffness_, z_stiffness_, twist_damping_, bend_damping_;
   std::vector<double> rest_twist_, rest_y_, rest_z_;  // [rad]
@@ -112,6 +135,9 @@ class RodJoints {
   std::vector<double> chi_, half_sine_, half_cosine_;      // half: of half the twist
   // Of the present iterate
   std::vector<double> end_twist_;  // [rad]
+  // Where springs slide
+  std::vector<SlidingSpring> yielding_, friction_;
+  std::vector<AboutAxes> end_yielded_, end_slipped_;  // of the present iterate
 };
 
 }  // namespace verlet_cable

@@ -221,7 +221,8 @@ class SimulationChecker {
   void check_body(const std::string& key, const GuideDesc& guide) {
     const auto body =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const BodyDesc& b) { return b.name == guide.body; });
-    if (guide.place && !has_pose(*body)) errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
+    if (guide.place && !has_pose(*body))
+      errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
     if (guide.inertia > 0)
       errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia need a frame, for now");
   }
@@ -250,7 +251,7 @@ class SimulationChecker {
     const bool turns_body = std::any_of(cable.attachments.begin(), cable.attachments.end(), [](const AttachmentDesc& a) {
       return !a.body.empty() && a.type == AttachmentType::clamp;
     });
-    return !material.bending_stiffness.is_isotropic() || (bends && (is_bent || turns_body)) ||
+    return !material.bending_stiffness.is_isotropic() || material.remembers_bending() || (bends && (is_bent || turns_body)) ||
            (material.torsional_stiffness > 0 && cable.rest_twist != 0);
   }
 
@@ -261,8 +262,8 @@ class SimulationChecker {
         errors_.add(
             key + ".cable", quoted(cable.name),
             "a cable that no other sheave holds, as " + quoted(other.name) +
-                " does; for now, several are only for cables with one bending_stiffness that are straight at rest and not "
-                "clamped to bodies");
+                " does; for now, several are only for cables with one bending_stiffness that are straight at rest, do not yield "
+                "and are not clamped to bodies");
   }
 
   /// Beside a guide there is cable on both sides, up to what else holds it.

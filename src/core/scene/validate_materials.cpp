@@ -34,6 +34,17 @@ void require_torsional_stiffness(const std::string& name, const MaterialDesc& ma
                  "bending_stiffness" + (likely > 0 ? ", " + rounded_text(likely) : "") + ")");
 }
 
+/// What yields, or whose strands rub, does so as it is bent: where nothing resists that, there is nothing to yield.
+void check_bending_memory(const std::string& prefix, const MaterialDesc& material, Errors& errors) {
+  if (!has_sound_bending_stiffness(material) || material.bending_stiffness.smallest() > 0) return;
+  const std::string why = " for a material without bending_stiffness" +
+                          std::string(material.bending_stiffness.is_isotropic() ? "" : " about both y and z");
+  if (material.yield_curvature < infinity && positive_or_infinite.contains(material.yield_curvature))
+    errors.add(prefix + "yield_curvature", number_text(material.yield_curvature), ".inf [1/m]" + why);
+  if (material.bending_friction > 0 && not_negative.contains(material.bending_friction))
+    errors.add(prefix + "bending_friction", number_text(material.bending_friction), "0 [N m]" + why);
+}
+
 }  // namespace
 
 void check_materials(const SceneDesc& scene, Errors& errors) {
@@ -42,6 +53,7 @@ void check_materials(const SceneDesc& scene, Errors& errors) {
     materials.check("materials." + escaped(named.name), named.name, errors);
     check_fields("materials." + escaped(named.name) + ".", material_fields, named.material, errors);
     check_bending_stiffness("materials." + escaped(named.name) + ".", named.material, errors);
+    check_bending_memory("materials." + escaped(named.name) + ".", named.material, errors);
     if (!named.material.bending_stiffness.is_isotropic())
       require_torsional_stiffness(named.name, named.material, "with a bending_stiffness that differs about y and z", errors);
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "chain/node_arrays.h"
+#include "rod/bending_memory.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -223,6 +224,7 @@ void insert_node(int segment, double first, const CableModel& model, CableState&
   state.masses[node + 1] -= half_density * first;
   state.masses[node] = half_density * whole;
   duplicate_segment(segment, state);
+  if (!state.bending_memory.empty()) state.bending_memory[segment].back() = state.bending_memory[node].front() = {};
   state.rest_lengths[segment] = first;
   state.rest_lengths[node] = second;
   if (!state.joint_twist.empty()) {
@@ -259,10 +261,14 @@ double remove_node(int node, CableState& state) {
   }
   give(before, second / whole);
   give(after, first / whole);
-  const auto mean = Overloaded{
-      [&](const auto& a, const auto& b) { return (first * a + second * b) / whole; },
-      [&](int a, int b) { return first < second ? b : a; }  // what it is made of: as the longer one
-  };
+  const auto mean =
+      Overloaded{[&](const auto& a, const auto& b) { return (first * a + second * b) / whole; },
+                 [&](int a, int b) { return first < second ? b : a; },  // what it is made of: as the longer one
+                 // The joints beside it have the bend of the node, too.
+                 [&](const std::array<HalfBend, 2>& a, const std::array<HalfBend, 2>& b) {
+                   return std::array<HalfBend, 2>{sum_of({{1, a[0]}, {second / whole, a[1]}, {second / whole, b[0]}}),
+                                                  sum_of({{1, b[1]}, {first / whole, a[1]}, {first / whole, b[0]}})};
+                 }};
   visit_segment_arrays(state, [&](auto& values) { values[before] = mean(values[before], values[node]); });
   if (!state.directors.empty()) state.directors[before] = director;
   state.rest_lengths[before] = length;

@@ -93,6 +93,7 @@ struct World::Implementation {
   void add_body(SimulatedBody body);
   void add_junctions();
   void place_bodies();
+  void yield_to_shape(int cable);
   void settle_started_bodies(const std::vector<int>& descs);
   bool place_body(int index);
   Vector3 hanging_gravity(const SimulatedCable& cable, const std::vector<Attachment>& placing, const Vector3& place) const;

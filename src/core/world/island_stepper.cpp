@@ -5,6 +5,7 @@
 
 #include "guide/guides.h"
 #include "guide/node_passing.h"
+#include "rod/bending_memory.h"
 #include "rod/initial_shape.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -239,6 +240,11 @@ void complete_drive_step(int index, State& state) {
       span.origin -= change;
     }
     if (!cable.state.directors.empty()) pass_twist_through_winch(drive, cable.state, memory.targets);
+    // What comes out of a winch remembers nothing, what it takes in is forgotten.
+    const double out = drive.fed();
+    if (!cable.state.bending_memory.empty())
+      end == 0 ? carry_bends(0, {out, 0.5 * out}, cable.state)
+               : carry_bends(2 * drive.segment + 1, {-0.5 * out, -out}, cable.state);
   }
   if (!complete_drive(drive)) memory.drive.reset();
 }

@@ -441,6 +441,7 @@ bool Settling::leaves_when_let_go(Approach& approach, double& h) {
   bring_to_rest(cable_.state);
   if (leaves) {
     h = shortest_step(cable_);
+    cable_.state.bending_memory = before.bending_memory;  // what moved for a trial has not yielded
     return true;
   }
   cable_.state = before;

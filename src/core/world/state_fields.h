@@ -34,7 +34,8 @@ template <class T>
 auto fields(T& x, const MaterialDesc*) {
   return std::tie(x.linear_density, x.radius, x.axial_stiffness, x.bending_stiffness, x.torsional_stiffness, x.axial_damping,
                   x.bending_damping, x.torsional_damping, x.drag, x.friction, x.rolling_friction, x.breaking_tension,
-                  x.minimum_bend_radius, x.maximum_tension, x.transverse_stiffness, x.maximum_squeeze);
+                  x.minimum_bend_radius, x.maximum_tension, x.transverse_stiffness, x.maximum_squeeze, x.yield_curvature,
+                  x.hardening, x.bending_friction);
 }
 template <class T>
 auto fields(T& x, const NamedMaterial*) {
@@ -137,11 +138,15 @@ auto fields(T& x, const UnresolvedMotion*) {
   return std::tie(x.acceleration_changes, x.turns, x.changed, x.turned, x.known, x.damped);
 }
 template <class T>
+auto fields(T& x, const HalfBend*) {
+  return std::tie(x.yielded, x.slipped);
+}
+template <class T>
 auto fields(T& x, const CableState*) {
   return std::tie(x.rest_lengths, x.section_material, x.masses, x.rest_curvature, x.rest_twist, x.flexible_fraction,
                   x.beyond_limits, x.positions, x.velocities, x.accelerations, x.unresolved, x.tension, x.last_tension,
-                  x.axial_multiplier, x.yielding, x.taut_energy, x.twist, x.directors, x.spin, x.joint_twist, x.reference_node,
-                  x.reference_orientation);
+                  x.axial_multiplier, x.yielding, x.taut_energy, x.twist, x.directors, x.spin, x.joint_twist, x.bending_memory,
+                  x.reference_node, x.reference_orientation);
 }
 template <class T>
 auto fields(T& x, const SimulatedCable*) {

@@ -9,7 +9,9 @@
 #include "body/make_body.h"
 #include "guide/guides.h"
 #include "guide/node_passing.h"
+#include "rod/bending_memory.h"
 #include "rod/initial_shape.h"
+#include "rod/kirchhoff_rod.h"
 #include "rod/length_projection.h"
 #include "rod/rest_curvature.h"
 #include "rod/rod_frames.h"
@@ -133,6 +135,7 @@ bool World::settle() {
       w.findings.unsettled.push_back(w.state.cables[cable].model->name);
   }
   settle_bodies(std::vector<char>(w.state.cables.size(), 1), false, w.state, w.workspaces.value.local(), w.findings.unsettled);
+  for (int cable = 0; cable < static_cast<int>(w.state.cables.size()); ++cable) w.yield_to_shape(cable);
   w.told_unsettled = 0;
   w.note_unsettled(0);
   w.account_for_edit_since(energy_before);
@@ -225,6 +228,7 @@ int World::start_waiting(const BoundaryInputs& inputs) {
   w.weld_junctions(cables);
   w.place_bodies();  // that others hold which cables have placed
   w.settle_started_bodies(cables);
+  for (const int i : cables) w.yield_to_shape(find(w.state.cables, scene.cables[i].name));
   for (const int i : nets)
     if (!w.is_cancelled()) w.start_net(scene.nets[i], ids, inputs);
   w.note_unsettled(w.told_unsettled);
@@ -370,6 +374,7 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   cable.state.reference_orientation = smallest_rotation(Vector3::UnitX(), cable.state.positions[1] - cable.state.positions[0]);
   set_stiff_ends(desc.stiff_ends, cable.state);
   set_rest_shape(desc, *cable.model, cable.state);
+  fit_bending_memory(*cable.model, cable.state);
   if (is_whole_rod(*cable.model, cable.state)) start_frames(memory.targets.directions, cable.state);
   if (desc.rest_curvature.type == RestCurvatureDesc::Type::initial && !cable.state.rest_curvature.empty())
     take_rest_curvature(memory.targets.directions, cable.state);
@@ -422,11 +427,23 @@ void World::Implementation::fit_frames(int index) {
     model.is_twisted = twisted;
     cable.model = std::make_shared<const CableModel>(std::move(model));
   }
+  fit_bending_memory(*cable.model, cable.state);
   std::vector<DirectionTarget>& clamps = state.cable_progress[index].targets.directions;
   if (is_whole_rod(*cable.model, cable.state))
     give_frames(cable.state, clamps);
   else
     drop_frames(cable.state, clamps);
+}
+
+/// What is in its shape at once, not by motion, has yielded as far as that shape wants it.
+void World::Implementation::yield_to_shape(int index) {
+  if (index < 0 || state.cables[index].state.bending_memory.empty()) return;
+  SimulatedCable& cable = state.cables[index];
+  const KinematicTargets& targets = state.cable_progress[index].targets;
+  std::vector<HeldDirection> directions;
+  hold_directions_at(0, 0, targets, directions);
+  hold_directions_on_bodies(state.attachments, state.bodies, targets, directions);
+  verlet_cable::yield_to_shape(*cable.model, directions, cable.state);
 }
 
 /// After a change of what holds a cable, of its nodes, or of its materials.

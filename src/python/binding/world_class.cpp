@@ -223,6 +223,9 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
            "(n,) [N] of the segments of a cable or the links of a net, mean over the last step; tension is positive.")
       .def("curvature", read<Quantity::curvature>, py::arg("name"), "(n - 1,) [1/m] at the inner nodes of a cable.")
       .def("twist", read<Quantity::twist>, py::arg("name"), "(n - 1,) [rad/m] at the inner nodes of a cable.")
+      .def("plastic_curvature", read<Quantity::plastic_curvature>, py::arg("name"),
+           "(n - 1,) [1/m] at the inner nodes of a cable: by which yielding has bent what carries no moment; 0 where nothing can "
+           "yield.")
       .def("orientations", read<Quantity::orientations>, py::arg("name"),
            "(n, 4) quaternions x, y, z, w of the segments of a cable: the x axis along the segment, with the roll of the "
            "material.")

@@ -125,6 +125,7 @@ QuantityShape shape_of(const World& world, Quantity quantity, const std::string&
       return {find_tension(world, name).size(), 0};
     case Quantity::curvature:
     case Quantity::twist:
+    case Quantity::plastic_curvature:
       return {static_cast<std::size_t>(find_cable(world, name).state.segments() - 1), 0};
     case Quantity::orientations:
       return {static_cast<std::size_t>(find_cable(world, name).state.segments()), 4};
@@ -168,6 +169,11 @@ void copy_quantity(const World& world, Quantity quantity, const std::string& nam
       return write(node_curvature(find_cable(world, name).state), to);
     case Quantity::twist:
       return write(node_twist(find_cable(world, name).state), to);
+    case Quantity::plastic_curvature: {
+      std::vector<double> curvature = plastic_curvature(find_cable(world, name));
+      curvature.resize(find_cable(world, name).state.segments() - 1, 0.0);
+      return write(curvature, to);
+    }
     case Quantity::orientations:
       return write(segment_orientations(find_cable(world, name).state), to);
     case Quantity::wrench: {

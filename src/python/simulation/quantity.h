@@ -17,19 +17,21 @@ class UnknownName : public std::runtime_error {
 
 /// What can be read of a world, by the name of a cable, net, particle, body or attachment.
 enum class Quantity {
-  positions,      ///< [m] a node: of cables n + 1, of nets all, of particles 1; 3 columns
-  velocities,     ///< [m/s] likewise
-  tension,        ///< [N] a segment n, or a link of a net
-  curvature,      ///< [1/m] an inner node of a cable, n - 1
-  twist,          ///< [rad/m] an inner node of a cable, n - 1
-  orientations,   ///< a segment of a cable, n: x along it, roll of the material; 4 columns: x, y, z, w
-  wrench,         ///< 6 numbers: force [N] and torque [N m] of an attachment on its holder, fixed frame's axes
-  contact_force,  ///< 6 numbers: likewise of what touches an obstacle, link or body, torque about the origin of its frame
-  body_pose,      ///< 7 numbers: place [m] and orientation x, y, z, w of a body's frame
-  body_twist      ///< 6 numbers: velocity [m/s] of a body's center of mass, and angular velocity [rad/s], fixed frame's axes
+  positions,          ///< [m] a node: of cables n + 1, of nets all, of particles 1; 3 columns
+  velocities,         ///< [m/s] likewise
+  tension,            ///< [N] a segment n, or a link of a net
+  curvature,          ///< [1/m] an inner node of a cable, n - 1
+  twist,              ///< [rad/m] an inner node of a cable, n - 1
+  plastic_curvature,  ///< [1/m] likewise; 0 where nothing can yield
+  orientations,       ///< a segment of a cable, n: x along it, roll of the material; 4 columns: x, y, z, w
+  wrench,             ///< 6 numbers: force [N] and torque [N m] of an attachment on its holder, fixed frame's axes
+  contact_force,      ///< 6 numbers: likewise of what touches an obstacle, link or body, torque about the origin of its frame
+  body_pose,          ///< 7 numbers: place [m] and orientation x, y, z, w of a body's frame
+  body_twist          ///< 6 numbers: velocity [m/s] of a body's center of mass, and angular velocity [rad/s], fixed frame's axes
 };
-constexpr std::array<const char*, 10> quantity_names{"positions",    "velocities", "tension",       "curvature", "twist",
-                                                     "orientations", "wrench",     "contact_force", "body_pose", "body_twist"};
+constexpr std::array<const char*, 11> quantity_names{"positions",     "velocities",        "tension",      "curvature",
+                                                     "twist",         "plastic_curvature", "orientations", "wrench",
+                                                     "contact_force", "body_pose",         "body_twist"};
 
 inline const char* name_of(Quantity quantity) {
   return quantity_names[static_cast<std::size_t>(quantity)];

@@ -93,6 +93,7 @@ Cable to_message(const SimulatedCable& cable) {
   message.tension = cable.state.tension;
   message.curvature = node_curvature(cable.state);
   message.twist = node_twist(cable.state);
+  message.plastic_curvature = plastic_curvature(cable);
   message.rest_length = cable.state.length();
   message.radius = CableMaterials(cable).largest_radius();
   return message;

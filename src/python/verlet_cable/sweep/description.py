@@ -17,8 +17,8 @@ from .variations import Variation, read_variation
 
 # Fields of World and Batch, and their units.
 FIELDS = {
-    'positions': 'm', 'velocities': 'm/s', 'tension': 'N', 'curvature': '1/m', 'twist': 'rad/m', 'orientations': 'quaternion x, y, z, w',
-    'wrench': 'N, N m', 'body_pose': 'm, quaternion x, y, z, w', 'body_twist': 'm/s, rad/s',
+    'positions': 'm', 'velocities': 'm/s', 'tension': 'N', 'curvature': '1/m', 'twist': 'rad/m', 'plastic_curvature': '1/m',
+    'orientations': 'quaternion x, y, z, w', 'wrench': 'N, N m', 'body_pose': 'm, quaternion x, y, z, w', 'body_twist': 'm/s, rad/s',
 }
 MOTION = 'motion'  # the key of the varied values under which the motion is that was drawn
 _KEYS = ('scene', 'motion', 'motions', 'loads', 'duration', 'record', 'samples', 'seed', 'vary')

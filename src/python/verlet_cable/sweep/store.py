@@ -52,7 +52,8 @@ _CHECKSUM_BYTES = 4
 _NO_MESSAGE = b'not simulated yet'
 _NO_CHOICE = -1
 _DIMENSIONS = {'positions': ('nodes', 'axes'), 'velocities': ('nodes', 'axes'), 'tension': ('segments',), 'curvature': ('inner_nodes',),
-               'twist': ('inner_nodes',), 'orientations': ('segments', 'quaternion'), 'wrench': ('force_torque',),
+               'twist': ('inner_nodes',), 'plastic_curvature': ('inner_nodes',), 'orientations': ('segments', 'quaternion'),
+               'wrench': ('force_torque',),
                'body_pose': ('position_quaternion',), 'body_twist': ('linear_angular',)}
 
 

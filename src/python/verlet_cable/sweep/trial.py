@@ -11,7 +11,7 @@ from .paths import holder_of, parse_path
 from .text_yaml import shown
 
 _MOST_LISTED = 5
-_NODE_FIELDS = ('positions', 'velocities', 'tension', 'curvature', 'twist', 'orientations')
+_NODE_FIELDS = ('positions', 'velocities', 'tension', 'curvature', 'twist', 'plastic_curvature', 'orientations')
 _ANY_SCENE = {'particles': [{'name': 'particle', 'mass': '1', 'position': ['0', '0', '0']}]}
 
 
