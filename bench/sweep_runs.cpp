@@ -13,7 +13,6 @@
 #include <utility>
 #include <vector>
 
-#include "scene/frame_source.h"
 #include "simulation/batch.h"
 #include "simulation/driven_world.h"
 #include "verlet_cable/scene/scene_reader.h"
@@ -72,7 +71,7 @@ void run_one_by_one(const SceneDesc& base, const std::vector<Values>& values, st
                     std::vector<Rows>& rows) {
   for (std::size_t i = first; i < last; ++i) {
     const auto scene = scene_of(base, values[i]);
-    DrivenWorld world(scene, std::make_shared<FrameSource>(*scene, Motion{}));
+    DrivenWorld world(scene, Motion{});
     world.world().step_one_by_one(true);
     append(world.world(), rows[i]);
     for (int step = 1; step <= steps; ++step) {
@@ -89,7 +88,7 @@ void run_together(const SceneDesc& base, const std::vector<Values>& values, std:
     const std::size_t end = std::min(last, start + chunk);
     std::vector<std::shared_ptr<const SceneDesc>> scenes;
     for (std::size_t i = start; i < end; ++i) scenes.push_back(scene_of(base, values[i]));
-    Batch batch(std::move(scenes), {}, 1);
+    Batch batch(scenes, {}, {}, 1);
     for (std::size_t i = start; i < end; ++i) append(batch[i - start].world(), rows[i]);
     batch.begin_steps(steps, record_every, {std::begin(quantities), std::end(quantities)});
     batch.advance(steps);

@@ -130,6 +130,7 @@ Batch::Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, i
       events_(worlds_.size()),
       status_(worlds_.size(), StepResult::Status::ok),
       errors_(std::move(errors)) {
+  errors_.resize(worlds_.size());
   for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
 }
 
