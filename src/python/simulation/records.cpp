@@ -39,12 +39,15 @@ Records::Records(const World& world, const std::vector<Quantity>& quantities, st
   for (const Quantity quantity : quantities) {
     for (std::string& name : names_of(world, quantity)) {
       const QuantityShape shape = shape_of(world, quantity, name);
-      all_.push_back({quantity, std::move(name), shape, nullptr, std::vector<char>(worlds * records, 0)});
-      bytes += static_cast<double>(sizeof(double) * shape.size() * worlds) * static_cast<double>(records);
+      all_.push_back({quantity, std::move(name), shape, nullptr, {}});
+      bytes += static_cast<double>((sizeof(double) * shape.size() + sizeof(char)) * worlds) * static_cast<double>(records);
     }
   }
   check_memory("record_every: " + std::to_string(records) + " records of " + std::to_string(worlds) + " worlds", bytes);
-  for (Record& record : all_) record.numbers = room_for(record.shape.size() * worlds * records);
+  for (Record& record : all_) {
+    record.numbers = room_for(record.shape.size() * worlds * records);
+    record.changed.assign(worlds * records, 0);
+  }
 }
 
 const Record* Records::find(Quantity quantity, const std::string& name) const {
