@@ -85,3 +85,8 @@ def test_an_offset_needs_no_rotation(hang):
 def test_a_scene_without_a_path_is_refused_as_one_that_is_not_there():
     with pytest.raises(SceneError, match='scene: cannot read ""'):
         Scene.load('')
+
+
+def test_an_integer_of_any_size_is_told(hang):
+    with pytest.raises(TypeError, match=f'^node: {2 ** 70}; allowed: an integer; this one is too large$'):
+        world_of(hang).apply_force('hose', 2 ** 70, [0, 0, 1])

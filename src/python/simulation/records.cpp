@@ -40,7 +40,7 @@ Records::Records(const World& world, const std::vector<Quantity>& quantities, st
     for (std::string& name : names_of(world, quantity)) {
       const QuantityShape shape = shape_of(world, quantity, name);
       all_.push_back({quantity, std::move(name), shape, nullptr, {}});
-      bytes += static_cast<double>((sizeof(double) * shape.size() + 1) * worlds) * static_cast<double>(records);
+      bytes += static_cast<double>((sizeof(double) * shape.size() + sizeof(char)) * worlds) * static_cast<double>(records);
     }
   }
   check_memory("record_every: " + std::to_string(records) + " records of " + std::to_string(worlds) + " worlds", bytes);

@@ -123,7 +123,7 @@ def _fits(kind, value):
     if kind == 'bool':
         return isinstance(value, (bool, np.bool_))
     if kind == 'int':
-        return _succeeds(operator.index, value)
+        return _succeeds(operator.index, value) and not _is_too_large(value)
     if kind == 'float':
         return not isinstance(value, str) and _succeeds(float, value)
     if kind == 'buffer':
@@ -132,6 +132,10 @@ def _fits(kind, value):
         return _are_numbers(value)
     known = _class(kind.rpartition('.')[2])
     return known is None or isinstance(value, known)
+
+
+def _is_too_large(integer):
+    return operator.index(integer).bit_length() > 63
 
 
 def _succeeds(function, value):
@@ -168,6 +172,8 @@ def _words(kind):
 
 
 def _way(kind, value):
+    if kind == 'int' and _succeeds(operator.index, value):
+        return '; this one is too large'
     for (asked, given), way in _WAYS.items():
         if kind.rpartition('.')[2] == asked and isinstance(value, given):
             return way
