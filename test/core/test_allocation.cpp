@@ -34,6 +34,7 @@ TEST(Allocation, StepAllocatesNothing) {
   scene.materials.push_back({"ribbon", scene.materials[0].material});
   scene.materials.back().material.bending_stiffness = {0.02, 0.005};
   scene.materials.back().material.torsional_stiffness = 0.01;
+  scene.materials.back().material.yield_curvature = 1;
   CableDesc& ribbon = scene.cables.emplace_back();
   ribbon.name = "ribbon";
   ribbon.material = "ribbon";
