@@ -388,7 +388,9 @@ TEST(Hoist, SwayingRopesAreTakenIn) {
       World world(scene, initial_frames(scene));
       std::vector<Vector3> velocities = world.cables()[0].state.velocities;
       for (int i = 5; i < 15; ++i) velocities[i].x() += 1e-3;
-      ASSERT_TRUE(world.apply(edit::SetState{0, std::nullopt, velocities}).ok);
+      edit::SetState sway;
+      sway.cables.push_back({0, std::nullopt, velocities});
+      ASSERT_TRUE(world.apply(sway).ok);
       if (slips)
         ASSERT_TRUE(world.apply(edit::SetLength{0, false, 0.3, 3, 22}).ok);
       else
