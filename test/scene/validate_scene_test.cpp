@@ -88,6 +88,8 @@ TEST(ValidateScene, everyRangeIsChecked) {
   in_waves.fluid.waves = {{0.5, 8, 0, 0}};
   ASSERT_EQ(joined(validate(in_waves)), "");
   expect_ranges_checked(in_waves, in_waves.fluid.waves[0], wave_fields, "fluid.waves[0].");
+  // What yields and rubs is what bends.
+  scene.materials[0].material.bending_stiffness = 0.01;
   expect_ranges_checked(scene, scene.materials[0].material, material_fields, "materials.m.");
   expect_ranges_checked(scene, scene.cables[0], cable_fields, "cables[0].");
   expect_ranges_checked(scene, scene.cables[0], cable_integer_fields, "cables[0].");

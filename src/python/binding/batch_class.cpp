@@ -324,8 +324,8 @@ BatchClass add_batch_class(py::module_& module) {
            "(count, n - 1) or (count, records, n - 1) [1/m].")
       .def("twist", read<Quantity::twist>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, n - 1) or (count, records, n - 1) [rad/m].")
-      .def("plastic_curvature", read<Quantity::plastic_curvature>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
-           "(count, n - 1) or (count, records, n - 1) [1/m].")
+      .def("plastic_curvature", read<Quantity::plastic_curvature>, py::arg("name"), py::kw_only(),
+           py::arg("missing") = py::none(), "(count, n - 1) or (count, records, n - 1) [1/m].")
       .def("orientations", read<Quantity::orientations>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, n, 4) or (count, records, n, 4): x, y, z, w.")
       .def("wrench", read<Quantity::wrench>, py::arg("attachment"), py::kw_only(), py::arg("missing") = py::none(),

@@ -77,7 +77,8 @@ void add_report_methods(py::module_& module, WorldMethods& methods) {
   methods.add_reader(
       "ledger", [](PythonWorld& self) { return ledger_dict(self.world().ledger()); },
       "Where energy [J] has come from and gone since the start: a dict with the dicts work (attachments, winches, obstacles, "
-      "applied) and dissipated (axial, bending, torsional, yielding, drag, contact, guides, bodies, unresolved, edits), change (of "
+      "applied) and dissipated (axial, bending, torsional, yielding, drag, contact, guides, bodies, unresolved, edits), change "
+      "(of "
       "energy()['total']), unaccounted (change - work + dissipated: rounding and tolerances) and unaccounted_steps (in which "
       "that was too much).");
   methods.add_reader(
