@@ -692,7 +692,7 @@ def learning():
 
 
 def test_the_policy_of_the_manual_lays_the_cable():
-    policy = numpy.loadtxt(CHECKOUT / 'doc/python/learning/lay_cable_policy.csv')
+    policy = numpy.loadtxt(CHECKOUT / 'doc/python/environments/lay_cable_policy.csv')
     held = learning().clips_held(policy)
     assert len(held) == 32 and held.mean() > 2.5
 
@@ -706,5 +706,5 @@ def test_the_example_learns(tmp_path):
     assert curve[:, 1].tolist() == [3200, 6400] and (curve[:, 3] >= curve[:, 2]).all() and (curve[:, 2:] >= 0).all()
     for file in ('lay_cable_learning.csv', 'lay_cable_policy.csv'):
         assert (tmp_path / 'first' / file).read_bytes() == (tmp_path / 'second' / file).read_bytes()
-    shown = CHECKOUT / 'doc/python/learning/lay_cable_learning.csv'
+    shown = CHECKOUT / 'doc/python/environments/lay_cable_learning.csv'
     assert shown.read_text().splitlines()[0] == (tmp_path / 'first/lay_cable_learning.csv').read_text().splitlines()[0]
