@@ -106,7 +106,8 @@ void CableStepper::balance_lengths(const Substep& s, double given_back, SubstepR
   for (int i = 0; changes_lengths(s) && i < segments_; ++i) {
     if (is_elastic_at(i)) {
       if (i == winch_.segment) result.balance.work.winches += work_of_winch_beyond();
-      if (is_wound(s.boundary, i)) result.balance.work.winches += work_of_winding_at_once(s, i);
+      for (const GrowingSegment& growing : s.boundary.growing)
+        if (growing.segment == i) result.balance.work.winches += work_of_winding_at_once(s, growing);
       if (axial_damping_[i] == 0) continue;
       const Straining strained = straining(s, i);
       const double middle = 0.5 * (strained.start + strained.end);

@@ -166,7 +166,7 @@ class CableStepper {
   void wind_beyond(const Substep& substep, double wanted);
   double strain_energy(int segment, double rest, double length) const;
   double work_of_winch_beyond() const;
-  double work_of_winding_at_once(const Substep& substep, int segment) const;
+  double work_of_winding_at_once(const Substep& substep, const GrowingSegment& growing) const;
   void finish_winch(const Substep& substep);
   bool keeps_tension(int segment) const { return segment == winch_.segment && winch_.mode == WinchMode::keeps; }
   void factor_segments();

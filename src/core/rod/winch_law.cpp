@@ -167,15 +167,16 @@ double CableStepper::work_of_winch_beyond() const {
 }
 
 /// [J] Where forces are taken at the end of the substep, an elastic segment has been wound to its rest length there before it was
-/// strained. This is missing to both at once: tension does its work on what comes in, which brings the energy of its strain.
-double CableStepper::work_of_winding_at_once(const Substep& s, int i) const {
+/// strained. This is missing to both at once: what comes in, or goes out, has the strain at the end, and is pulled by that, so
+/// that what the substep loses is the energy of the change of strain, which never is negative.
+double CableStepper::work_of_winding_at_once(const Substep& s, const GrowingSegment& growing) const {
   if (s.part() < 1) return 0;
-  const Straining strained = straining(s, i);
+  const int i = growing.segment;
+  const double way = growing.way + (i == winch_.segment ? winch_.beyond : 0), end = target_length_[i];
   const Resistance<double> resistance{axial_stiffness_[i], 0};
-  const auto per_length = [&](double strain) { return -resistance.stress(strain, 0) - resistance.energy(strain); };
-  const double start = length_[i] / strained.start - 1, end = std::sqrt(end_square_[i]) / strained.end - 1;
-  const double at_once = 0.5 * (strained.end - strained.start) * (per_length(start) + per_length(end));
-  return at_once - (strain_energy(i, strained.end, length_[i]) - strain_energy(i, strained.start, length_[i]));
+  const double strain = std::sqrt(end_square_[i]) / end - 1;
+  const double at_once = -way * (resistance.stress(strain, 0) + resistance.energy(strain));
+  return at_once - (strain_energy(i, end, length_[i]) - strain_energy(i, end - way, length_[i]));
 }
 
 }  // namespace verlet_cable
