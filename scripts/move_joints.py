@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """move_joints.py: moves the joints of the arms in config/scenes/dress_pack.urdf and config/examples/table_camera.urdf, from rest, on
-joint_states at 100 Hz."""
+joint_states at 100 Hz. At first they stand where cables start, until these have seen them."""
 import os
 import sys
 
@@ -12,6 +12,7 @@ import node_thread  # noqa: E402
 from example_motions import joint_positions  # noqa: E402
 
 RATE = 100.0  # [Hz]
+STANDING = 2.0  # [s]
 
 
 def main():
@@ -24,7 +25,7 @@ def move_joints():
     started = rospy.Time.now()
     while not rospy.is_shutdown():
         now = rospy.Time.now()
-        positions = joint_positions((now - started).to_sec())
+        positions = joint_positions(max((now - started).to_sec() - STANDING, 0.0))
         message = JointState(name=list(positions), position=list(positions.values()))
         message.header.stamp = now
         publisher.publish(message)
