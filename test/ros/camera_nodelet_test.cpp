@@ -11,14 +11,9 @@
 #include <set>
 
 #include "camera/stage_maker.h"
+#include "wait_until.h"
 
 namespace {
-
-bool wait_until(const std::function<bool()>& done) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10);
-  while (!done() && ros::WallTime::now() < deadline) ros::WallDuration(0.01).sleep();
-  return done();
-}
 
 /// Stamps of the messages of a topic.
 template <class Message>

@@ -22,13 +22,9 @@
 #include <thread>
 #include <vector>
 
-namespace {
+#include "wait_until.h"
 
-bool wait_until(const std::function<bool()>& done) {
-  const ros::WallTime deadline = ros::WallTime::now() + ros::WallDuration(10);
-  while (!done() && ros::WallTime::now() < deadline) ros::WallDuration(0.01).sleep();
-  return done();
-}
+namespace {
 
 /// The messages of a topic that two subscribers of this process get, by stamp.
 template <class Message>

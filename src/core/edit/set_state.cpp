@@ -82,11 +82,6 @@ const Attachment* attachment_of_guide(int guide, const State& state) {
   return found == state.attachments.end() ? nullptr : &*found;
 }
 
-/// [m] as GuideView has it.
-double arc_length_at(const Attachment& attachment, const CableState& cable) {
-  return cable.length(0, attachment.node) + 0.5 * cable.length(attachment.node, last_node(attachment));
-}
-
 void check_guide(const edit::SetState::OfGuide& set, const State& state, Problems& problems) {
   const Attachment* attachment = attachment_of_guide(set.guide, state);
   if (!attachment) return problems.add("arc_length: no cable is in the guide");

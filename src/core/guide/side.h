@@ -22,6 +22,11 @@ inline Side side_of(const Attachment& attachment, int side) {
   return {last_node(attachment), 1};
 }
 
+/// [m] At rest, from the start of a cable to the middle of what is in a guide.
+inline double arc_length_at(const Attachment& attachment, const CableState& cable) {
+  return cable.length(0, attachment.node) + 0.5 * cable.length(attachment.node, last_node(attachment));
+}
+
 /// Of a segment: nodes are taken in and given out no further from a guide than this.
 constexpr double most_ahead = 0.6;
 

@@ -81,28 +81,29 @@ void each_rigid_span(const CableModel& model, const CableState& state, const std
   }
 }
 
+/// What `length` [m] says of the segments of a span that grow, together.
+template <typename Length>
+double sum_in(const HeldSpan& span, const std::vector<GrowingSegment>& growing, Length length) {
+  double sum = 0;
+  for (const GrowingSegment& segment : growing)
+    if (segment.segment >= span.first && segment.segment < span.last) sum += length(segment);
+  return sum;
+}
+
 /// [m] That winches which give way to tension may let out into it in the substep.
 double let_out_into(const HeldSpan& span, const std::vector<GrowingSegment>& growing) {
-  double length = 0;
-  for (const GrowingSegment& segment : growing)
-    if (segment.segment >= span.first && segment.segment < span.last && segment.law.gives()) length += segment.law.most;
-  return length;
+  return sum_in(span, growing, [](const GrowingSegment& segment) { return segment.law.gives() ? segment.law.most : 0; });
 }
 
 /// [m] By how much further its holders are apart in a substep of `h` [s], beyond what it grows by.
 double drawn_in_substep(const HeldSpan& span, const std::vector<GrowingSegment>& growing, double h) {
-  double drawn = span.distance - span.start_distance - let_out_into(span, growing);
-  for (const GrowingSegment& segment : growing)
-    if (segment.segment >= span.first && segment.segment < span.last) drawn -= h * segment.growth;
-  return drawn;
+  return span.distance - span.start_distance - let_out_into(span, growing) -
+         sum_in(span, growing, [h](const GrowingSegment& segment) { return h * segment.growth; });
 }
 
 /// [m] By how much it is longer where the state is wound to than at the start of the substep.
 double wound_from_start(const HeldSpan& span, const std::vector<GrowingSegment>& growing) {
-  double length = 0;
-  for (const GrowingSegment& segment : growing)
-    if (segment.segment >= span.first && segment.segment < span.last) length += segment.way - segment.left;
-  return length;
+  return sum_in(span, growing, [](const GrowingSegment& segment) { return segment.way - segment.left; });
 }
 
 /// How long it may be at the end of the substep.

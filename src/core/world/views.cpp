@@ -3,6 +3,7 @@
 
 #include "chain/direction.h"
 #include "guide/guides.h"
+#include "guide/side.h"
 #include "rod/joint_views.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/world.h"
@@ -77,7 +78,7 @@ GuideView World::view_guide(int guide) const {
     view.cable = attachment.body.index;
     const CableState& cable = cables()[view.cable].state;
     const int first = attachment.node, last = last_node(attachment);
-    view.arc_length = cable.length(0, first) + 0.5 * cable.length(first, last);
+    view.arc_length = arc_length_at(attachment, cable);
     // Half a segment before and after it weighs, and is accelerated.
     const double density = CableMaterials(cables()[view.cable])[first].linear_density;
     const Vector3 gravity = implementation_->state.scene->gravity.at(cable.positions[first]);

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "camera/from_messages.h"
+#include "publish/color.h"
 #include "verlet_cable/core/scene_desc.h"
 
 namespace verlet_cable {
@@ -18,22 +19,13 @@ view::Color color_of(const std_msgs::ColorRGBA& color) {
   return {std::clamp(color.r, 0.0f, 1.0f), std::clamp(color.g, 0.0f, 1.0f), std::clamp(color.b, 0.0f, 1.0f)};
 }
 
-std_msgs::ColorRGBA color_of(const std::array<double, 4>& rgba) {
-  std_msgs::ColorRGBA color;
-  color.r = static_cast<float>(rgba[0]);
-  color.g = static_cast<float>(rgba[1]);
-  color.b = static_cast<float>(rgba[2]);
-  color.a = static_cast<float>(rgba[3]);
-  return color;
-}
-
 /// How it looks of which only the place is known.
 Appearance default_appearance(const CableArray& state) {
   Appearance appearance;
   const auto add = [&](const std::string& name, const std::array<double, 4>& color, double radius) {
     Look& look = appearance.looks.emplace_back();
     look.name = name;
-    look.color = color_of(color);
+    look.color = to_color(color);
     look.radii = {radius};
   };
   for (const Cable& cable : state.cables) add(cable.name, CableDesc{}.color, cable.radius);
