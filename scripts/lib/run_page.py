@@ -2,8 +2,9 @@
 """run_page.py PAGE.md [--rewrite]: runs the blocks of Python of a page, in order, as a reader does who pastes them into python3.
 
 What a block prints is what the ```text block after it shows, exactly, or, where that is marked ```text tolerance=0.01, with numbers
-that differ by so much of themselves and by one of the last digit. Figures that a block draws are the pictures after it that lie in the
-folder named like the page. Exits with 1 and says what differs; with --rewrite it makes printed text and pictures anew instead.
+that differ by so much of themselves and by one of the last digit. Figures that a block draws are the pictures after it, in the same
+section, that lie in the folder named like the page. Exits with 1 and says what differs; with --rewrite it makes printed text and
+pictures anew instead.
 
 python3 also echoes the value of a statement that is an expression, and pages do not show that: it may only be what Matplotlib
 returns, and no more of that than ECHOED_LINES and ECHOED_LENGTH for each statement.
@@ -54,17 +55,20 @@ class Block:
 
 def read_blocks(lines, folder):
     """The blocks of Python among the lines of a page whose pictures lie in a folder."""
-    blocks, begin, kind = [], None, None
+    blocks, begin, kind, drawn = [], None, None, []
     for k, line in enumerate(lines):
         if begin is None:
             if line.startswith('```'):
                 begin, kind = k + 1, line[3:].strip()
-            elif blocks:
-                blocks[-1].pictures += [path for path in PICTURE.findall(line) if path.startswith(folder + '/')]
+            elif line.startswith('#'):
+                drawn = []  # a section may show what nothing on the page draws
+            else:
+                drawn += [path for path in PICTURE.findall(line) if path.startswith(folder + '/')]
         elif line.rstrip() == '```':
             tolerance = TOLERANCE.match(kind)
             if kind == 'python':
                 blocks.append(Block(begin + 1, ''.join(lines[begin:k])))
+                drawn = blocks[-1].pictures
             elif blocks and (kind == 'text' or tolerance):
                 blocks[-1].texts.append(Text(begin, k, float(tolerance[1]) if tolerance else 0.0))
             begin = None

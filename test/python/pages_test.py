@@ -114,6 +114,7 @@ def test_text_is_compared(write, printed, shown, tolerance, same):
     ([python('import matplotlib.pyplot as plt\nplt.figure()')], 'draws 1 figures; the page shows 0'),
     ([python('import matplotlib.pyplot as plt\nplt.figure()'), '![A figure](page/figure.png)'], 'page/figure.png is not there'),
     ([python('x = 1'), '![A figure](page/figure.png)'], 'draws 0 figures; the page shows 1'),
+    ([python('x = 1'), '## Section', python('y = 1'), '![A figure](page/figure.png)'], 'line 7: the block draws 0 figures; the page shows 1'),
     ([python('x = 1\nraise ValueError("odd")')], 'line 4'),
     ([python('x = 1\n"odd"')], "line 4: echoes 'odd', when it is pasted"),
     ([python('for k in range(2):\n    k')], 'line 3: echoes 0, when it is pasted'),
@@ -125,6 +126,11 @@ def test_text_is_compared(write, printed, shown, tolerance, same):
 def test_what_is_wrong_with_a_page(write, parts, message):
     done = run_page(write(*parts))
     assert done.returncode == 1 and message in done.stdout, done.stdout
+
+
+def test_a_section_without_blocks_may_show_what_the_page_does_not_draw(write):
+    done = run_page(write(python('x = 1'), '## Another program', '![A figure](page/figure.png)'))
+    assert done.returncode == 0, done.stdout
 
 
 def test_rewriting_makes_text_and_pictures_so_that_they_are_right(write):
