@@ -7,7 +7,6 @@ import sys
 
 from setuptools import Extension, setup
 from setuptools.command.build_ext import build_ext
-from distutils.errors import DistutilsSetupError  # after setuptools, which has it where Python no longer does
 
 HERE = pathlib.Path(__file__).resolve().parent
 PACKAGES = {
@@ -20,19 +19,21 @@ DESTINATIONS = ['GLOBAL_BIN', 'PACKAGE_BIN', 'PACKAGE_LIB', 'PACKAGE_PYTHON', 'P
 
 
 class BuildByCMake(build_ext):
-    """Builds and installs what CMake has for the package, beside its modules."""
+    """Builds and installs what CMake has for the package, beside its modules.
+
+    For an editable install, too: that has a directory of its own with links to the modules, see `editable_wheel` below. In the
+    checkout, a ROS workspace that has the same checkout would take the compiled parts for its own.
+    """
 
     def run(self):
-        if self.inplace or getattr(self, 'editable_mode', False):
-            raise DistutilsSetupError(
-                'pip install -e . would put the compiled parts into the checkout, where a ROS workspace that has the same checkout would '
-                'take them for its own; allowed: pip install . (again after each change; what has not changed is not compiled again), '
-                'or scripts/build, in whose workspace changed modules are in effect at once')
+        self.inplace = False
         super().run()
 
     def build_extension(self, ext):
-        place = pathlib.Path(self.get_ext_fullpath(ext.name)).resolve().parent
+        place = self._place(ext)
         build = pathlib.Path(self.build_temp).resolve()
+        if getattr(self, 'editable_mode', False):  # whose own directory is temporary: all would be compiled anew each time
+            build = HERE / 'build' / 'temp.editable'
         jobs = self.parallel or len(os.sched_getaffinity(0))
         subprocess.run(['cmake', '-S', HERE, '-B', build, f'-DCMAKE_INSTALL_PREFIX={place}',
                         f'-DVERLET_CABLE_INSTEAD={HERE / "cmake/python_package.cmake"}',
@@ -40,6 +41,16 @@ class BuildByCMake(build_ext):
                         f'-DCATKIN_DEVEL_PREFIX={build}', *(f'-DCATKIN_{name}_DESTINATION=.' for name in DESTINATIONS)], check=True)
         subprocess.run(['cmake', '--build', build, '--parallel', str(jobs)], check=True)
         subprocess.run(['cmake', '--install', build, '--strip', '--component', 'Unspecified'], check=True)
+
+    def get_outputs(self):
+        return [str(path) for ext in self.extensions for path in sorted(self._place(ext).rglob('*'))
+                if path.is_file() and not path.is_symlink()]
+
+    def get_output_mapping(self):
+        return {}
+
+    def _place(self, ext):
+        return pathlib.Path(self.build_lib).resolve() / pathlib.Path(*ext.name.split('.')[:-1])
 
 
 def by_catkin():
@@ -64,6 +75,7 @@ else:
         package_data={'verlet_cable': ['py.typed', '*.pyi'], 'verlet_cable.environments': ['*.pyi'], 'verlet_cable.sim': ['*.pyi']},
         ext_modules=[Extension('verlet_cable._simulation', [])],
         cmdclass={'build_ext': BuildByCMake},
+        options={'editable_wheel': {'mode': 'strict'}},
         entry_points={'console_scripts': [
             'cable_sim = verlet_cable.programs:cable_sim',
             'cable_fit = verlet_cable.programs:cable_fit',

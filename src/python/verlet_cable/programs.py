@@ -15,5 +15,5 @@ def cable_fit() -> None:
 
 
 def _become(name: str) -> None:
-    program = pathlib.Path(__file__).resolve().parent / name
+    program = pathlib.Path(__file__).absolute().parent / name  # of an editable install this file is a link
     os.execv(program, [name, *sys.argv[1:]])
