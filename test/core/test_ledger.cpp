@@ -176,6 +176,44 @@ TEST(Ledger, EditsHaveEntries) {
   EXPECT_NEAR(world.ledger().unaccounted(), 0, tolerated * scale);
 }
 
+/// What ends that are drawn together lose as they are welded is an edit's.
+TEST(Ledger, ClosesOverAJoin) {
+  SceneDesc scene = scenes::between_two_points(40, 0.6);
+  scene.materials[0].material.bending_stiffness = 0.02;
+  scene.materials[0].material.torsional_stiffness = 0.015;
+  scene.materials[0].material.bending_damping = 1e-3;
+  for (AttachmentDesc& attachment : scene.cables[0].attachments) attachment.type = AttachmentType::clamp;
+  World world(scene, BoundaryInputs(1));
+  for (int i = 0; i < 100; ++i) world.step(BoundaryInputs(1));
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 20}).ok);
+  for (int i = 0; i < 30; ++i) world.step(BoundaryInputs(1));
+  const double edits = world.ledger().balance.dissipated.edits, before = world.ledger().unaccounted();
+  ASSERT_TRUE(world.apply(edit::Join{0, true, 1, false}).ok);
+  for (int i = 0; i < 300; ++i) world.step(BoundaryInputs(1));
+  ASSERT_EQ(world.cables().size(), 1u);
+  ASSERT_EQ(world.cables()[0].state.segments(), 39);
+  EXPECT_GT(world.ledger().balance.dissipated.edits - edits, 1e-3);
+  EXPECT_NEAR(world.ledger().unaccounted(), before, 10 * tolerated * scale);
+}
+
+/// Without gravity, what is bent and at rest has no energy that moves, and its energies are rounded.
+TEST(Ledger, RoundingIsNotTold) {
+  SceneDesc scene = scenes::held_by_a_hand(20, AttachmentType::clamp);
+  scene.gravity.acceleration = Vector3::Zero();
+  scene.materials[0].material.bending_stiffness = 0.05;
+  scene.materials[0].material.bending_damping = 0.01;
+  scene.materials[0].material.yield_curvature = 2;
+  scene.materials[0].material.hardening = 0.1;
+  const auto hand = [](double x) { return scenes::hand_at({x, 0, 0}); };
+  constexpr double apart = 0.7;
+  World world(scene, hand(apart));
+  for (int i = 0; i < 3000; ++i) world.step(hand(apart));
+  ASSERT_GT(world.energy().total(), 0.01);
+  const auto told = world.ledger().unaccounted_steps;
+  for (int i = 0; i < 2000; ++i) world.step(hand(apart));
+  EXPECT_EQ(world.ledger().unaccounted_steps, told);
+}
+
 /// It is state: a copy goes on with it, and the hash knows it.
 TEST(Ledger, IsCopiedWithItsWorld) {
   const SceneDesc scene = scenes::released(12, 1);

@@ -47,6 +47,7 @@ struct HeldSpan {
   double start_distance = 0;  ///< [m] of its nodes, at the start of the substep
   double rounding = 0;        ///< [m] of distances
   bool gives_way = false;     ///< a body holds it
+  bool has_branch = false;    ///< at a junction between its holders
 };
 
 /// Calls `visit` with every span none of which can stretch.
@@ -62,6 +63,7 @@ void each_rigid_span(const CableModel& model, const CableState& state, const std
     const HeldNode* last_place = &held[k];
     for (next = k + 1;; ++next) {
       const HeldNode& node = held[next];
+      span.has_branch = span.has_branch || node.at_junction;
       if (!node.at_junction) {
         span.distance += (node.position - last_place->position).norm();
         span.start_distance += (state.positions[node.node] - state.positions[last_place->node]).norm();
@@ -112,23 +114,30 @@ HeldSpan let_out(HeldSpan span, const std::vector<GrowingSegment>& growing) {
   return span;
 }
 
-bool is_strained(const HeldSpan& span, const CableState& state) {
-  double length = 0;
-  for (int i = span.first; i < span.last; ++i) length += (state.positions[i + 1] - state.positions[i]).norm();
-  return length > span.length * (1 + reported_stretch) + span.rounding;
+/// Of the way from a span that is straight, as what is reported has it, to one that yields, 0 to 1, where it is so long [m].
+double share_at(double length, const HeldSpan& span) {
+  return std::clamp(((length - span.rounding) / span.length - 1 - reported_stretch) / yielding_strain, 0.0, 1.0);
 }
 
-/// Of the way from a span that is straight, as what is reported has it, to one that yields, 0 to 1. What stays strained goes on
-/// to yield nearly as it did, so that it gives back what it has taken: stiffened at once it would give much more. In as long as
-/// its holders are looked ahead it comes to its length.
+/// [m] Of a span as the state has it.
+double present_length(const HeldSpan& span, const CableState& state) {
+  double length = 0;
+  for (int i = span.first; i < span.last; ++i) length += (state.positions[i + 1] - state.positions[i]).norm();
+  return length;
+}
+
+/// How far a span is on that way. What stays strained, as a bent one does when its holders are already nearer than it is long,
+/// goes on to yield nearly as it did, so that it gives back what it has taken: stiffened at once it would give much more. In as
+/// long as its holders are looked ahead it comes to its length. A trunk whose holders come nearer does not: limp and unstrained,
+/// it might be too straight for the next step.
 double yielding_share(const HeldSpan& span, const CableState& state, const std::vector<GrowingSegment>& growing,
                       const YieldingAhead& ahead) {
   const double drawn = drawn_in_substep(span, growing, ahead.substep), soon = ahead.time / ahead.substep * std::max(0.0, drawn);
-  const double share = ((span.distance + soon - span.rounding) / span.length - 1 - reported_stretch) / yielding_strain;
   double left = 0;
-  if (state.yielding > 0 && ahead.time > 0 && drawn >= -span.rounding && is_strained(span, state))
+  const bool may_stay = ahead.time > 0 && (!span.has_branch || drawn >= -span.rounding);
+  if (state.yielding > 0 && may_stay && share_at(present_length(span, state) + std::min(0.0, drawn), span) > 0)
     left = state.yielding * std::exp(-ahead.substep / ahead.time);
-  return std::clamp(share, left, 1.0);
+  return std::max(left, share_at(span.distance + soon, span));
 }
 
 void lengthen(const HeldSpan& span, double distance, std::vector<double>& lengths) {

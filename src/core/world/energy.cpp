@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "guide/guides.h"
 #include "law/resistance.h"
@@ -14,6 +15,9 @@
 namespace verlet_cable {
 
 namespace {
+
+/// Of an energy, which is a sum over many nodes.
+constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
 
 double kinetic_energy_of_nodes(const CableState& cable) {
   double sum = 0;
@@ -114,6 +118,18 @@ Energy energy_of_body(const State& state, int index) {
   return energy;
 }
 
+namespace {
+
+/// [J] What is rounded where energies of an island are taken from each other.
+double rounding_of_energy(const Island& island, const State& state) {
+  double size = 0;
+  for (const int cable : island.cables) size += std::abs(state.cable_progress[cable].energy);
+  for (const int body : island.bodies) size += std::abs(state.body_progress[body].energy);
+  return rounding * size;
+}
+
+}  // namespace
+
 double energy_of(const Island& island, const State& state, double part, std::vector<HeldDirection>& directions) {
   double sum = 0;
   for (const int cable : island.cables) sum += energy_of_cable(state, cable, part, directions).total();
@@ -158,7 +174,8 @@ bool is_accounted(double unaccounted, const Island& island, const State& state, 
                                               : state.cables[island.cables.front()].state.positions.front();
   // Velocities within the tolerance are none: where nothing weighs anything, what they make is rounding.
   const double length = length_of_part(island, state), slow = state.scene->tolerance * length;
-  return size <= energy + mass_of(island, state) * (state.scene->gravity.at(place).norm() * length + slow * slow);
+  energy += mass_of(island, state) * (state.scene->gravity.at(place).norm() * length + slow * slow);
+  return size <= energy + rounding_of_energy(island, state) / accountable_part;
 }
 
 void account_for_displacement(double change, EnergyBalance& balance) {
