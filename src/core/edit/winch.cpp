@@ -246,6 +246,7 @@ void World::Implementation::plan_drive_step(int index) {
   SimulatedCable& cable = state.cables[index];
   if (!s.drive->is_winch() && cable.state.rest_lengths[s.drive->segment] <= closing_distance * cable.model->segment_length) {
     close_joint(index);
+    account_for_blow(index);
     return;
   }
   plan_drive_of(index);
