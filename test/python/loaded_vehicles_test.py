@@ -3,8 +3,6 @@ import numpy
 from worlds import world_of
 
 GRAVITY = 9.81
-
-
 STEP = 0.005  # [s] of the scenes
 
 
@@ -21,9 +19,8 @@ def is_closed(world, scale):
 def pilot(world, body, mass, goal, velocity, feed):
     """A controller of place and speed at 100 Hz: its thrust acts until it says another."""
     pose, twist = world.body_pose(body)[:3], world.body_twist(body)[:3]
-    thrust = mass * (9 * (numpy.asarray(goal) - pose) + 6 * (numpy.asarray(velocity) - twist)) + feed
+    thrust = mass * (9 * (goal - pose) + 6 * (velocity - twist)) + feed
     world.apply_wrench(body, thrust)
-    return thrust
 
 
 def drone(length, segments, stiffness=None):
