@@ -114,5 +114,29 @@ TEST(WinchBesideAnEyelet, drawsNoMoreThanWhatRubs) {
 INSTANTIATE_TEST_SUITE_P(Cables, WinchBesideAGuide, testing::ValuesIn(winches()),
                          [](const auto& info) { return info.param.name; });
 
+/// Over an eyelet on which the rope sticks, from a winch that keeps another tension than the load has: nothing moves.
+TEST(KeptTensionBesideAGuide, StandsWhereTheRopeSticks) {
+  for (const bool at_end : {false, true})
+    for (const double kept : {20.0, 22.0, 25.0})
+      for (const auto& [segments, time_step] :
+           {std::pair{60, 1e-3}, std::pair{60, 2e-3}, std::pair{60, 5e-3}, std::pair{30, 2e-3}}) {
+        SceneDesc scene = lift({"", GuideDesc::Type::eyelet, 1.4, 0, 0, at_end});
+        scene.time_step = time_step;
+        scene.cables[0].segments = segments;
+        scene.cables[0].point_masses[0].mass = 2;
+        scene.guides[0].friction = 0.3;
+        World world(scene, {});
+        ASSERT_TRUE(world.apply(edit::SetTension{0, at_end, kept, 2, 1, 3}).ok);
+        const CableState& cable = world.cables()[0].state;
+        const auto beside = [&](bool winch) { return winch == at_end ? cable.tension.back() : cable.tension.front(); };
+        const double hanging = gravity * (2 + 0.5 * density * length / segments);
+        for (int i = 0; i * time_step < 0.3; ++i) {
+          ASSERT_EQ(world.step({}).status, Status::ok) << i;
+          ASSERT_NEAR(beside(true), kept, 0.01 * kept) << i << ' ' << at_end << ' ' << segments << ' ' << time_step;
+          ASSERT_NEAR(beside(false), hanging, 0.01 * hanging) << i << ' ' << at_end << ' ' << segments << ' ' << time_step;
+        }
+      }
+}
+
 }  // namespace
 }  // namespace verlet_cable

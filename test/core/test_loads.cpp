@@ -407,6 +407,29 @@ TEST(Loads, FollowTheirNodesThroughCutsAndJoins) {
   EXPECT_EQ(find_load(world, "far")->node, 19 - 5 - 1 + 1);
 }
 
+/// Loads draw two cables to and fro that are joined meanwhile: what their ends lose as they meet is in the ledger.
+TEST(Loads, OnCablesThatAreJoinedKeepTheLedger) {
+  for (const double stiffness : {infinity, 1e4}) {
+    SceneDesc scene = scenes::one_cable(20);
+    scene.time_step = 2e-3;
+    scene.materials[0].material.axial_stiffness = stiffness;
+    scene.cables[0].attachments = {scenes::attachment("left", PlaceDesc::At::start, {0, 0, 0})};
+    scene.cables.push_back(scene.cables[0]);
+    scene.cables[1].name = "other";
+    scene.cables[1].attachments = {scenes::attachment("right", PlaceDesc::At::start, {0.3, 0, 0})};
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(world.apply(on_node("x", 0, 20, {0.1, 0.2, 0})).ok);
+    ASSERT_TRUE(world.apply(on_node("y", 1, 20, {0.1, -0.2, 0})).ok);
+    ASSERT_TRUE(world.apply(on_node("z", 1, 5, {0, -0.2, 0})).ok);
+    scenes::run(world, 200);
+    ASSERT_TRUE(world.apply(edit::Join{0, true, 1, true}).ok);
+    scenes::run(world, 1000);
+    ASSERT_EQ(world.cables()[0].state.segments(), 40);
+    EXPECT_EQ(world.ledger().unaccounted_steps, 0) << stiffness;
+    EXPECT_LT(std::abs(world.ledger().unaccounted()), 1e-5) << stiffness;
+  }
+}
+
 /// A break in a step renumbers what it still pulls.
 TEST(Loads, StayWithTheirPieceWhenACableBreaks) {
   SceneDesc scene = scenes::one_cable(20);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 #include <string>
+#include <utility>
 
 #include "../support/scenes.h"
 #include "law/winch.h"
@@ -324,11 +325,63 @@ TEST(KeptTensions, AreRefusedWithAllReasons) {
     EXPECT_NE(result.message.find(part), std::string::npos) << result.message;
   EXPECT_FALSE(world.apply(edit::SetTension{0, false, 1, 1, 3, 2}).ok);
   EXPECT_FALSE(world.apply(edit::SetTension{1, false, 1, 1, 1, 2}).ok);
-  for (const double bad : {-1.0, infinity, std::nan("")}) {
-    const EditResult refused = world.apply(edit::SetLength{0, false, 1.5, 1, bad});
-    EXPECT_NE(refused.message.find("max_tension: "), std::string::npos) << refused.message;
+  for (const double bad : {-1.0, 1.1e9, 1e300, infinity, std::nan("")}) {
+    const EditResult refused = world.apply(edit::SetLength{0, false, 1.5, 0, bad});
+    for (const char* part : {"speed: 0", "max_tension: ", "allowed: 0 or more [N] (from 0 to 1e+09)"})
+      EXPECT_NE(refused.message.find(part), std::string::npos) << refused.message;
+    EXPECT_NE(world.apply(kept(bad)).message.find("(from 0 to 1e+09)"), std::string::npos);
   }
+  const std::string loose =
+      "at_end: true; allowed: false, nothing holds the end of cable cable, and a winch there has no tension";
+  EXPECT_EQ(world.apply(edit::SetTension{0, true, 1, 1, 1, 2}).message, loose);
+  EXPECT_EQ(world.apply(edit::SetLength{0, true, 3, 1, 5}).message, loose);
   EXPECT_EQ(world.hash(), before);
+}
+
+/// Let go, it winds no longer, and the cable goes on as it went.
+TEST(KeptTensions, EndWhereNothingHoldsTheWinch) {
+  const SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  for (const bool keeps : {true, false}) {
+    World world(scene, initial_frames(scene));
+    ASSERT_TRUE(keeps ? world.apply(kept(0)).ok : world.apply(edit::SetLength{0, false, 4, 0.5, 100}).ok);
+    for (int i = 0; i < 200; ++i) world.step(initial_frames(scene));
+    EXPECT_TRUE(world.view_winch(0));
+    const double out = length(world);
+    ASSERT_TRUE(world.apply(edit::Unpin{"winch"}).ok);
+    EXPECT_FALSE(world.view_winch(0));
+    EXPECT_EQ(world.apply(kept(0)).message,
+              "at_end: false; allowed: none, nothing holds an end of cable cable, and a winch there has no tension");
+    for (int i = 0; i < 200; ++i) ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+    EXPECT_EQ(length(world), out);
+    EXPECT_LT(unaccounted(world, gravity * mass(world) * 2), 1e-6);
+  }
+}
+
+TEST(KeptTensions, AreSeen) {
+  SceneDesc scene = winch_scene(40, 2, infinity, 2e-3);
+  scene.cables[0].point_masses = {scenes::payload(1)};
+  scene.cables[0].initial.type = InitialShapeDesc::Type::settled;
+  World world(scene, initial_frames(scene));
+  EXPECT_FALSE(world.view_winch(0));
+  ASSERT_TRUE(world.apply(kept(11)).ok);
+  for (int i = 0; i < 50; ++i) world.step(initial_frames(scene));
+  WinchView seen = world.view_winch(0).value();
+  EXPECT_EQ(seen.kind, WinchView::Kind::tension);
+  EXPECT_FALSE(seen.at_end || seen.slips);
+  EXPECT_EQ(seen.goal, 11);
+  EXPECT_NEAR(seen.tension, 11, 1e-3);
+  EXPECT_NEAR(seen.speed, -world.cables()[0].state.velocities.back().z(), 0.01);
+  EXPECT_GT(seen.speed, 0.05);
+  ASSERT_TRUE(world.apply(kept(0)).ok);
+  EXPECT_EQ(world.view_winch(0)->kind, WinchView::Kind::free_spool);
+  ASSERT_TRUE(world.apply(edit::SetLength{0, false, 1.5, 0.5, 5}).ok);
+  for (int i = 0; i < 50; ++i) world.step(initial_frames(scene));
+  seen = world.view_winch(0).value();
+  EXPECT_EQ(seen.kind, WinchView::Kind::length);
+  EXPECT_NEAR(seen.goal, 1.5, 1e-9);
+  EXPECT_EQ(seen.max_tension, 5);
+  EXPECT_TRUE(seen.slips);
+  EXPECT_GT(seen.speed, 0);
 }
 
 /// No more than the scene's segments come out of a winch that slips.
@@ -427,6 +480,25 @@ TEST(Hoist, WorkOfElasticRopesIsTensionTimesLength) {
     }
 }
 
+/// Where the brake of a spool that turned freely comes on, a load that fell is slowed as the winch brakes: its tension rises to
+/// that, and nowhere beyond.
+TEST(Hoist, TheBrakeOfAFreeSpoolComesOnWithoutAJerk) {
+  for (const double acceleration : {1.0, 5.0})
+    for (const double time_step : {5e-4, 2e-3}) {
+      SceneDesc scene = hoist(1, infinity, acceleration);
+      scene.time_step = time_step;
+      World world(scene, initial_frames(scene));
+      ASSERT_TRUE(world.apply(edit::SetTension{0, false, 0, 5, 0.1, 2}).ok);
+      const double braking = (2 + 0.05 * 1.5) * (gravity + acceleration);
+      double most = 0;
+      for (int i = 1; i * time_step < 0.5; ++i) {
+        ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+        most = std::max(most, tension(world));
+      }
+      EXPECT_NEAR(most, braking, 0.02 * braking) << acceleration << ' ' << time_step;
+    }
+}
+
 /// It stands where the body is as near as it may be.
 TEST(Hoist, KeptTensionBrakesAtTheLastSegment) {
   for (const double shortest : {0.0, 0.05, 0.1}) {
@@ -442,6 +514,26 @@ TEST(Hoist, KeptTensionBrakesAtTheLastSegment) {
     EXPECT_NEAR(before, 0, 1e-3) << shortest;
     EXPECT_NEAR(length(world), std::max(shortest, 0.005), 1e-3);
   }
+}
+
+/// Whatever its motor is to do meanwhile, a brake lets what bends out of a clamp at the tension that it holds: at several m/s.
+TEST(SlippingWinch, LetsStiffCablesThroughItsClamp) {
+  for (const double acceleration : {1.0, 1000.0})
+    for (const auto& [bending_stiffness, time_step] : {std::pair{0.02, 2e-3}, std::pair{0.2, 1e-3}}) {
+      SceneDesc scene = hoist(3, infinity, acceleration);
+      scene.time_step = time_step;
+      scene.cables[0].segments = 60;
+      scene.materials[0].material.bending_stiffness = bending_stiffness;
+      scene.cables[0].attachments[0].type = AttachmentType::clamp;
+      scene.cables[0].attachments[0].rotation = {0, M_PI / 2, 0};
+      World world(scene, initial_frames(scene));
+      ASSERT_TRUE(world.apply(edit::SetLength{0, false, 3, 1, 5}).ok);
+      for (int i = 1; i * time_step < 0.6; ++i) {
+        ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
+        ASSERT_NEAR(tension(world), 5, 0.02 * 5) << i << ' ' << acceleration << ' ' << bending_stiffness;
+      }
+      EXPECT_NEAR(velocity(world), -0.6 * (gravity - 5 / 2.15), 0.06);
+    }
 }
 
 struct HookCase {

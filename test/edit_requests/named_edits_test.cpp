@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "../support/nets.h"
@@ -167,8 +168,21 @@ TEST(NamedEdits, ACutAtANodeOfANetRemovesAllItsLinks) {
             "location: net \"chain\" has no link there; allowed: nodes that links join");
 }
 
-TEST(NamedEdits, AWinchTellsHowLongItTakes) {
+/// One node of `lower` and one of `upper` are held where they are.
+World held_at(const std::array<int, 2>& nodes) {
   World world = cables_and_net();
+  for (const int cable : {0, 1}) {
+    edit::Pin pin;
+    pin.body = cable_id(cable);
+    pin.node = nodes[cable];
+    pin.pose.position = world.cables()[cable].state.positions[nodes[cable]];
+    EXPECT_TRUE(world.apply(pin).ok);
+  }
+  return world;
+}
+
+TEST(NamedEdits, AWinchTellsHowLongItTakes) {
+  World world = held_at({10, 10});
   EXPECT_EQ(apply_set_length(world, "lower", true, 1.5, 0.25).message,
             "cable \"lower\" is paid out from 1 m to 1.5 m, which takes at least 2 s");
   EXPECT_EQ(apply_set_length(world, "upper", true, 0.75, 0.25).message,
@@ -178,7 +192,7 @@ TEST(NamedEdits, AWinchTellsHowLongItTakes) {
 }
 
 TEST(NamedEdits, AWinchTellsWhatItKeeps) {
-  World world = cables_and_net();
+  World world = held_at({10, 0});
   EXPECT_EQ(apply_set_tension(world, "lower", {0, true, 12.5, 0.5, 0.1, infinity}).message,
             "the winch at the end of cable \"lower\" keeps 12.5 N, at up to 0.5 m/s");
   EXPECT_EQ(apply_set_tension(world, "upper", {0, false, 0, 0.5, 0.1, 2}).message,

@@ -6,6 +6,7 @@ import unittest
 
 import rospy
 import rostest
+from diagnostic_msgs.msg import DiagnosticArray
 from geometry_msgs.msg import WrenchStamped
 
 from cable_client import CableClient, Messages, cable, contents
@@ -59,6 +60,27 @@ class WinchTest(unittest.TestCase):
             self.assertTrue(self.node.set_length('crane', False, 1.5, 0.5, 0).success)
             states.clear()
 
+    def test_diagnostics_list_winches_that_run(self):
+        weight = GRAVITY * (PAYLOAD + DENSITY * 2)
+
+        def told(part):
+            with Messages('/diagnostics', DiagnosticArray) as messages:
+                messages.wait_for(lambda array: any(value.key == 'winch crane' and part in value.value for status in array.status
+                                                    for value in status.values), part)
+
+        self.assertTrue(self.node.set_tension('crane', False, 0.9 * weight, 0.5, 0.2, 2.1).success)
+        told(f'at the start, keeps {0.9 * weight} N: ')
+        self.assertTrue(self.node.set_tension('crane', False, 0, 0.01, 0.2, 2.1).success)
+        told('at the start, free spool: ')
+        self.assertTrue(self.node.set_length('crane', False, 2.0, 0.5, 2 * weight).success)
+        told(f'at the start, to 2 m with at most {2 * weight} N: ')
+        # Without a limit it has done when it has wound.
+        self.assertTrue(self.node.set_length('crane', False, 2.0, 0.5, 0).success)
+        with Messages('/diagnostics', DiagnosticArray) as messages:
+            messages.wait_for(lambda array: any(status.name.endswith('simulation') for status in array.status)
+                              and not any(value.key == 'winch crane' for status in array.status for value in status.values),
+                              'diagnostics without the winch')
+
     def test_bad_requests_are_refused(self):
         self.assertTrue(self.node.pause(True).success)
         before = self.node.state()
@@ -74,6 +96,12 @@ class WinchTest(unittest.TestCase):
             self.assertLess(len(answer.message), 1000)
         answer = self.node.set_length('crane', False, 1, 1, -1)
         self.assertIn('max_tension: -1', answer.message)
+        for tension in (1e300, math.inf, NAN):
+            answer = self.node.set_tension('crane', False, tension, 0.5, 0.2, 2.0)
+            self.assertFalse(answer.success)
+            self.assertIn('allowed: 0 or more [N] (from 0 to 1e+09)', answer.message)
+        answer = self.node.set_tension('crane', True, 1, 0.5, 0.2, 2.0)
+        self.assertIn('at_end: true; allowed: false, nothing holds the end of cable crane', answer.message)
         answer = self.node.set_tension('crane', False, NAN, 0, -1, math.inf)
         self.assertFalse(answer.success)
         for part in ('tension: nan', 'max_speed: 0', 'min_length: -1'):

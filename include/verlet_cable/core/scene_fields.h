@@ -30,6 +30,7 @@ constexpr Range coordinate{-1e9, 1e9, "finite numbers"};
 constexpr Range unit_interval{0, 1, "numbers"};
 constexpr Range applied_load{-1e9, 1e9, "finite numbers"};
 constexpr Range load_duration{0, 1e9, "0 or more"};
+constexpr Range winch_tension{0, applied_load.highest, "0 or more"};
 constexpr double largest_integer = std::numeric_limits<int>::max();
 
 /// A number in a scene: its key, the member that stores it, its unit and range. One table for the reader, `validate` and the

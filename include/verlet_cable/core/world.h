@@ -20,6 +20,7 @@
 #include "verlet_cable/core/obstacle.h"
 #include "verlet_cable/core/scene_desc.h"
 #include "verlet_cable/core/types.h"
+#include "verlet_cable/core/winch.h"
 
 namespace verlet_cable {
 
@@ -265,6 +266,8 @@ class World {
   const std::vector<Attachment>& attachments() const;  ///< of the started cables, nets and bodies; including guides
   const std::vector<SimulatedGuide>& guides() const;   ///< those of the started cables
   GuideView view_guide(int guide) const;
+  /// Of a cable; none where no winch runs, or is to keep or heed a tension.
+  std::optional<WinchView> view_winch(int cable) const;
   const std::vector<Load>& loads() const;          ///< from outside, that act in the next step
   const std::vector<Obstacle>& obstacles() const;  ///< those of the scene, of the links of its robot, then those that edits added
   const Findings& findings() const;

@@ -7,7 +7,7 @@ GROUPS = {
     'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
     'What is simulated': [
         'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/ledger.h', 'core/load.h',
-        'core/contact.h', 'core/obstacle.h', 'core/surface_point.h'],
+        'core/winch.h', 'core/contact.h', 'core/obstacle.h', 'core/surface_point.h'],
     'Scenes': [
         'core/scene_desc.h', 'core/attachment_desc.h', 'core/body_desc.h', 'core/guide_desc.h', 'core/junction_desc.h', 'core/shape_desc.h',
         'core/frame_keys.h', 'core/scene_fields.h'],

@@ -72,8 +72,8 @@ def diagnostics_text(checkout):
     sections, last = {}, ''  # what no status is named after goes on with the one before
     for name, body in REPORT.findall(code):
         rows = [[anchor('diagnostics-' + match['key'].strip().replace(' ', '-')) + f'`{match["key"]}{"NAME" if match["more"] else ""}`', with_code(match['comment'] or '')] for match in REPORTED.finditer(body)]
-        sections.setdefault(name if name in STATUS.findall(code) else last, []).extend(rows)
-        last = name
+        last = name if name in STATUS.findall(code) else last
+        sections.setdefault(last, []).extend(rows)
     return ''.join(f'Status `{name}`:\n\n' + table(['key', 'value'], rows) for name, rows in sections.items())
 
 

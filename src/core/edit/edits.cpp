@@ -188,7 +188,9 @@ void World::Implementation::erase_attachment(int index) {
     for (std::size_t k = 0; k < s.holders.size(); ++k) s.holders[k].node = static_cast<int>(k);
   }
   if (body.is_net()) update_net(body.index);
-  if (body.is_cable()) find_targets_of(body.index);
+  if (!body.is_cable()) return;
+  end_loose_winch(body.index);
+  find_targets_of(body.index);
 }
 
 EditResult World::Implementation::apply(const edit::MoveAttachment& move) {

@@ -8,6 +8,7 @@
 #include "scene/scene_size.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
+#include "verlet_cable/core/scene_fields.h"
 #include "world/energy.h"
 #include "world/implementation.h"
 #include "world/island_stepper.h"
@@ -40,6 +41,34 @@ void add_material_motion(const LengthDrive& drive, double side, CableState& cabl
   const int n = cable.segments(), node = drive.end_node(n), i = drive.segment;
   const Vector3 along = segment_direction(cable, i);
   cable.velocities[node] += (node == 0 ? side : -side) * drive.fed_rate() * along;
+}
+
+/// What is wrong with a request, a line each.
+struct Problems {
+  std::string text;
+  void add(const std::string& problem) { text += (text.empty() ? "" : "\n") + problem; }
+  void require(bool holds, const char* field, double value, const std::string& allowed) {
+    if (!holds) add(std::string(field) + ": " + number_text(value) + "; " + allowed);
+  }
+  /// A winch that goes by its tension needs something to pull at: it has no inertia.
+  void require_held_end(const State& state, int index, bool at_end) {
+    const auto is_held = [&](bool end) { return is_attached(state, index, end ? state.cables[index].state.segments() : 0); };
+    if (is_held(at_end)) return;
+    add(std::string("at_end: ") + (at_end ? "true" : "false") + "; allowed: " +
+        (!is_held(!at_end) ? "none, nothing holds an end of cable "
+         : at_end          ? "false, nothing holds the end of cable "
+                           : "true, nothing holds the start of cable ") +
+        state.cables[index].model->name + ", and a winch there has no tension");
+  }
+};
+
+/// [m/s] At which cable comes through a winch that gives way: where it cannot stretch, as fast as the nodes beside the winch
+/// part; where it can, and waves shake them, as in the mean of the last step.
+double rate_at_winch(const SimulatedCable& cable, const LengthDrive& drive) {
+  if (is_elastic(CableMaterials(cable)[drive.segment])) return drive.rate + drive.slip;
+  const int i = drive.segment;
+  const Vector3 parting = cable.state.velocities[i + 1] - cable.state.velocities[i];
+  return parting.dot(segment_direction(cable.state, i)) + drive.debt_rate;
 }
 
 LengthDrive::Place winch_place(bool at_end) {
@@ -105,15 +134,16 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   const CableModel& model = *state.cables[index].model;
   const CableState& cable = state.cables[index].state;
   CableProgress& s = state.cable_progress[index];
-  const double fastest = fastest_winch(index);
-  if (!(speed > 0 && speed <= fastest))
-    return refused("speed: " + number_text(speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
-  if (!(max_tension >= 0 && max_tension < infinity))
-    return refused("max_tension: " + number_text(max_tension) + "; must be a number of N above 0, or 0 for none");
-  const double longest = longest_cable(index);
-  if (!(length > 0 && length <= longest))
-    return refused("length: " + number_text(length) + "; must be above 0, and at most " + rounded_bound_text(longest, -1) +
-                   " m, as limits.segments allows");
+  const double fastest = fastest_winch(index), longest = longest_cable(index);
+  Problems problems;
+  if (max_tension != 0) problems.require_held_end(state, index, at_end);
+  problems.require(length > 0 && length <= longest, "length", length,
+                   "must be above 0, and at most " + rounded_bound_text(longest, -1) + " m, as limits.segments allows");
+  problems.require(speed > 0 && speed <= fastest, "speed", speed,
+                   "must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
+  problems.require(winch_tension.contains(max_tension), "max_tension", max_tension,
+                   "allowed: " + winch_tension.text("N") + "; 0: none");
+  if (!problems.text.empty()) return refused(problems.text);
 
   LengthDrive drive = winch_at(index, at_end, speed);
   drive.left = length - (cable.length() + drive.debt);
@@ -141,18 +171,15 @@ EditResult World::Implementation::apply(const edit::SetTension& change) {
   if (const std::string reason = refused_winch(index, at_end); !reason.empty()) return refused(reason);
   const CableModel& model = *state.cables[index].model;
   const double fastest = fastest_winch(index);
-  std::string reasons;
-  const auto require = [&](bool holds, const std::string& reason) {
-    if (!holds) reasons += (reasons.empty() ? "" : "\n") + reason;
-  };
-  require(tension >= 0 && tension < infinity, "tension: " + number_text(tension) + "; must be a number of N, 0 or more");
-  require(max_speed > 0 && max_speed <= fastest,
-          "max_speed: " + number_text(max_speed) + "; must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
-  require(min_length >= 0 && min_length < infinity,
-          "min_length: " + number_text(min_length) + "; must be a number of m, 0 or more");
-  require(max_length > 0 && !(max_length < min_length),
-          "max_length: " + number_text(max_length) + "; must be above 0, and at least min_length, or .inf");
-  if (!reasons.empty()) return refused(reasons);
+  Problems problems;
+  problems.require_held_end(state, index, at_end);
+  problems.require(winch_tension.contains(tension), "tension", tension, "allowed: " + winch_tension.text("N"));
+  problems.require(max_speed > 0 && max_speed <= fastest, "max_speed", max_speed,
+                   "must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
+  problems.require(not_negative.contains(min_length), "min_length", min_length, "allowed: " + not_negative.text("m"));
+  problems.require(max_length > 0 && !(max_length < min_length), "max_length", max_length,
+                   "must be above 0, and at least min_length, or .inf");
+  if (!problems.text.empty()) return refused(problems.text);
 
   CableProgress& s = state.cable_progress[index];
   LengthDrive drive = winch_at(index, at_end, max_speed);
@@ -163,6 +190,16 @@ EditResult World::Implementation::apply(const edit::SetTension& change) {
   s.drive = drive;
   open_clamp(drive, state.attachments, state.cables[index].state.segments(), s.targets);
   return {true, "", model.name};
+}
+
+/// A winch that goes by its tension is gone where nothing holds it any longer: what leaves it moves on with the cable.
+void World::Implementation::end_loose_winch(int index) {
+  std::optional<LengthDrive>& drive = state.cable_progress[index].drive;
+  CableState& cable = state.cables[index].state;
+  if (!drive || !drive->is_winch() || !drive->heeds_tension() || is_attached(state, index, drive->end_node(cable.segments())))
+    return;
+  add_material_motion(*drive, 1, cable);
+  drive.reset();
 }
 
 /// [m] That can be taken in: up to the next node that is attached or carries a payload, or to the other end.
@@ -209,7 +246,7 @@ void World::Implementation::plan_drive_step(int index) {
   SimulatedCable& cable = state.cables[index];
   if (!s.drive->is_winch() && cable.state.rest_lengths[s.drive->segment] <= closing_distance * cable.model->segment_length) {
     close_joint(index);
-    account_for_edit(follow_energy_of_cable(index, state), state.ledger.balance);
+    account_for_blow(index);
     return;
   }
   plan_drive_of(index);
@@ -228,10 +265,16 @@ void World::Implementation::plan_drive_of(int index) {
   const double available = available_length(index), length = state.cables[index].state.length() + drive.debt;
   if (!drive.heeds_tension()) return plan_drive(available, time_step, drive);
   const double most_out = std::min(drive.max_length, longest_cable(index)) - length;
-  if (drive.keeps_tension) return plan_kept_tension(std::min(available, length - drive.min_length), most_out, time_step, drive);
+  if (drive.keeps_tension)
+    return plan_kept_tension(rate_at_winch(state.cables[index], drive), std::min(available, length - drive.min_length), most_out,
+                             time_step, drive);
   plan_drive(available, time_step, drive);
   drive.fastest_out = std::max(most_out, 0.0) / time_step;
-  drive.carried = std::min(drive.slip, drive.fastest_out);
+  if (!(drive.slip > 0)) return;
+  // What slips goes on as it goes, however the motor is to wind meanwhile: what bends is to have the length that is found.
+  const double going = rate_at_winch(state.cables[index], drive);
+  drive.slip = going - drive.rate;
+  drive.carried = std::clamp(going - drive.wound / time_step, 0.0, drive.fastest_out);
 }
 
 /// Segments appear and vanish at the winch, so that the one there stays about as long as the others.

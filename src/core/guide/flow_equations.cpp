@@ -97,6 +97,7 @@ void CableStepper::start_flows(const Substep& s, const CableState& state) {
     flow.rate = s.statics ? 0 : guided.rate;
     flow.acceleration = s.statics ? 0 : guided.acceleration;
     flow.changes = 0;
+    flow.changed = false;
     flow.way = flow.correction = 0;
     const double length = flowing_length(state.rest_lengths, flow.first, flow.last);
     flow.density = materials[flow.before].linear_density;
@@ -291,9 +292,12 @@ void CableStepper::evaluate_flows(const Substep& s) {
     const bool slips = grip < infinity && grip * press < guided.resistance;
     const double part_of_press = stretched * (rubbing_part(guided.friction, angle) + (slips ? grip : 0));
     const double rubs = part_of_press < infinity ? part_of_press * press + (slips ? 0 : stretched * guided.resistance) : infinity;
-    const Flow::Mode mode = !resists(guided)              ? Flow::Mode::free
-                            : flow.changes < most_changes ? next_mode(s, flow, guided, drive, rubs)
-                                                          : flow.mode;
+    // A winch that has just changed its mode leaves tensions that say nothing of the flow's: where neither gives way, what is
+    // between them has any.
+    const bool may_change = flow.changes < most_changes && !(winch_.segment >= 0 && winch_.changed);
+    const Flow::Mode mode = !resists(guided) ? Flow::Mode::free
+                            : may_change     ? next_mode(s, flow, guided, drive, rubs)
+                                             : flow.mode;
     // The first time tensions are those of the substep before.
     flow.changed = mode != flow.mode || flow.changes < 0;
     if (flow.changed) ++flow.changes;

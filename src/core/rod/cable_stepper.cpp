@@ -257,7 +257,8 @@ void CableStepper::set_growth(const Substep& s) {
     if (growing.law.gives()) start_winch(growing);
     if (i != 0 && i + 1 != segments_) continue;
     winch_node_ = i == 0 ? 0 : segments_;
-    material_way_ = (i == 0 ? rest_growth_[i] : -rest_growth_[i]) * get(segment_, i).normalized();
+    const double way = i == winch_.segment ? winch_.planned_way + winch_.beyond : rest_growth_[i];
+    material_way_ = (i == 0 ? way : -way) * get(segment_, i).normalized();
   }
 }
 
@@ -266,7 +267,7 @@ void CableStepper::start_bending(const Substep& s, const CableState& state) {
   const int i = std::clamp(winch_node_ - 1, 0, segments_ - 1);
   const Vector3 segment = get(segment_, i);
   const double part = is_elastic_at(i) && s.scheme == Scheme::conserving ? 0.5 : 1;
-  if (winch_node_ >= 0) set(segment_, i, segment + part * rest_growth_[i] * segment.normalized());
+  if (winch_node_ >= 0) set(segment_, i, segment + (winch_node_ == 0 ? part : -part) * material_way_);
   bending_.start(s.model, state, segment_, s.boundary.directions, s.damping_time(), s.part());
   set(segment_, i, segment);
   if (!bending_.active() && couples_second_) std::fill(system_.second.begin(), system_.second.end(), 0.0);

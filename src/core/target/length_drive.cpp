@@ -39,11 +39,11 @@ void give_debt_back(double time_step, LengthDrive& drive) {
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
 
-/// Goes on as it went, as far as it may.
+/// Goes on as it goes, as far as it may.
 void go_on(double time_step, LengthDrive& drive) {
-  const double last = drive.rate + drive.slip;
-  drive.rate = drive.next_rate = std::clamp(last, -drive.fastest_in, drive.fastest_out);
-  drive.slip = last - drive.rate;
+  const double going = drive.rate + drive.slip;
+  drive.rate = drive.next_rate = std::clamp(going, -drive.fastest_in, drive.fastest_out);
+  drive.slip = going - drive.rate;
   drive.wound = time_step * drive.rate;
   drive.change = drive.wound + drive.debt - drive.next_debt;
 }
@@ -81,17 +81,19 @@ void plan_drive(double available, double time_step, LengthDrive& drive) {
   give_debt_back(time_step, drive);
 }
 
-void plan_kept_tension(double available, double most_out, double time_step, LengthDrive& drive) {
-  // The mean of those with which it can just brake from the start of the step and from its end.
-  const auto fastest = [&](double left) {
+void plan_kept_tension(double going, double available, double most_out, double time_step, LengthDrive& drive) {
+  // The mean over the step of how it goes and of what it can just brake from at the end: what speeds it up does not let it go on
+  // to more. It may have been jerked to where it goes the other way, or faster than that.
+  const auto fastest = [&](double from, double left) {
     const double before = std::min(drive.speed, std::sqrt(2 * drive.acceleration * std::max(left, 0.0)));
     const double left_then = std::max(left - 0.5 * time_step * before, 0.0);
     const double after = std::min(drive.speed, braking_speed(left_then, time_step, drive.acceleration));
-    return std::min(0.5 * (before + after), std::max(left, 0.0) / time_step);
+    return std::min(0.5 * (std::clamp(from, 0.0, before) + after), std::max(left, 0.0) / time_step);
   };
-  drive.fastest_in = drive.tension > 0 ? fastest(available) : 0;
-  drive.fastest_out = fastest(most_out);
+  drive.fastest_in = drive.tension > 0 ? fastest(-going, available) : 0;
+  drive.fastest_out = fastest(going, most_out);
   drive.arrives = false;
+  drive.slip = going - drive.rate;
   give_debt_back(time_step, drive);
   go_on(time_step, drive);
 }
@@ -121,18 +123,19 @@ WinchLaw winch_law(const LengthDrive& drive, double part, double h, double time_
     law.most = h * law.most_rate;
   } else {
     // Behind the clutch its motor runs on as fast as it came to; nothing holds a spool that turns freely. Rates are means over
-    // substeps: at the end it has gone on speeding up or braking.
-    const double last = drive.rate + drive.slip, gain = h * drive.acceleration;
-    const double reach = drive.motor_speed + time_step * drive.acceleration;
-    const bool is_free = drive.tension == 0;
-    const double least = -std::min(drive.fastest_in, reach);
-    const double most = is_free ? drive.fastest_out : std::min(drive.fastest_out, reach);
-    law.least = h * (least - drive.rate);
-    law.most = h * (most - drive.rate);
-    law.least_rate = least + 0.5 * std::clamp(least - last, -gain, gain) - drive.rate;
-    law.most_rate = most + 0.5 * std::clamp(most - last, -gain, gain) - drive.rate;
+    // substeps: at the end it has gone on speeding up or braking, by half of what the motor does, or to where it brakes.
+    const double going = drive.rate + drive.slip, half_gain = 0.5 * h * drive.acceleration;
+    const double reach = drive.tension == 0 ? infinity : drive.motor_speed + time_step * drive.acceleration;
+    const auto end = [&](double fastest, double speed) {
+      const double rate = std::min(fastest, reach);
+      return rate + std::clamp(rate - speed, -half_gain, fastest < reach ? infinity : half_gain);
+    };
+    law.least = h * (-std::min(drive.fastest_in, reach) - drive.rate);
+    law.most = h * (std::min(drive.fastest_out, reach) - drive.rate);
+    law.least_rate = -end(drive.fastest_in, -going) - drive.rate;
+    law.most_rate = end(drive.fastest_out, going) - drive.rate;
   }
-  law.guess = std::clamp(h * (drive.slip - drive.carried), law.least, std::max(law.least, law.most));
+  law.guess = std::clamp(drive.keeps_tension ? h * drive.slip : 0, law.least, std::max(law.least, law.most));
   return law;
 }
 
@@ -186,14 +189,14 @@ double growth_at(const LengthDrive& drive, double part) {
   return drive.growth() + part * (drive.next_growth() - drive.growth()) + drive.carried;
 }
 
-bool complete_drive(LengthDrive& drive) {
+bool complete_drive(double time_step, LengthDrive& drive) {
+  const double found = drive.wound / time_step + drive.slip;  // in the mean
   drive.left = drive.arrives ? 0 : drive.left - drive.fed();
   drive.rate = drive.next_rate;
   drive.slipped = drive.carried = 0;
   drive.motor_speed = std::max(drive.motor_speed, std::abs(drive.rate + drive.slip));
   if (drive.slip != 0) {
     // A motor goes as what it pulls lets it, but does not turn round.
-    const double found = drive.rate + drive.slip;
     const double rate = drive.keeps_tension ? found : std::clamp(found, drive.rate, std::max(drive.rate, 0.0));
     drive.slip = found - rate;
     drive.rate = rate;

@@ -56,9 +56,9 @@ void open_clamp(const LengthDrive& drive, const std::vector<Attachment>& attachm
 /// `available` [m] is taken in.
 void plan_drive(double available, double time_step, LengthDrive& drive);
 
-/// The same of a winch that keeps a tension: it goes on as it went, but no faster than it may; what its tension makes of that
-/// each substep finds. At most `most_out` [m] is let out.
-void plan_kept_tension(double available, double most_out, double time_step, LengthDrive& drive);
+/// The same of a winch that keeps a tension: it goes on as it goes, `going` [m/s], but no faster than it may; what its tension
+/// makes of that each substep finds. At most `most_out` [m] is let out.
+void plan_kept_tension(double going, double available, double most_out, double time_step, LengthDrive& drive);
 /// Takes in no more than `most` [m] in this step: what is beside the winch may be in a guide that lets nothing through.
 void stall(double most, double time_step, LengthDrive& drive);
 /// In a substep of `h` [s] that ends at a part of the step.
@@ -79,7 +79,7 @@ void keep_flow(double part, double time_step, const CableModel& model, const Cab
 double growth_at(const LengthDrive& drive, double part);
 
 /// The step is done: what was next is now. False if the drive has nothing left to do.
-bool complete_drive(LengthDrive& drive);
+bool complete_drive(double time_step, LengthDrive& drive);
 
 /// Splits a segment in two of the rest lengths `first` [m] and what is left, on a straight line; velocities change linearly along
 /// it. Mass and momentum stay as they are.

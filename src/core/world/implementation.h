@@ -76,6 +76,7 @@ struct World::Implementation {
   EditResult apply(const edit::SetLength& change);
   EditResult apply(const edit::SetTension& change);
   std::string refused_winch(int cable, bool at_end) const;
+  void end_loose_winch(int cable);
   double fastest_winch(int cable) const;
   double longest_cable(int cable) const;
   LengthDrive winch_at(int cable, bool at_end, double speed) const;

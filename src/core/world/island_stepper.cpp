@@ -246,7 +246,7 @@ void complete_drive_step(int index, State& state) {
       end == 0 ? carry_bends(0, {out, 0.5 * out}, cable.state)
                : carry_bends(2 * drive.segment + 1, {-0.5 * out, -out}, cable.state);
   }
-  if (!complete_drive(drive)) memory.drive.reset();
+  if (!complete_drive(state.scene->time_step, drive)) memory.drive.reset();
 }
 
 void keep_flow_at_drive(int index, double part, State& state) {

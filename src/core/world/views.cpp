@@ -16,6 +16,9 @@ namespace verlet_cable {
 
 namespace {
 
+/// [m/s] What a winch slips by less is rounding.
+constexpr double rounded_slip = 1e-9;
+
 template <class T, class Is>
 int index_of(const std::vector<T>& list, const Is& is) {
   const auto found = std::find_if(list.begin(), list.end(), is);
@@ -90,6 +93,25 @@ GuideView World::view_guide(int guide) const {
   }
   return view;
 }
+std::optional<WinchView> World::view_winch(int cable) const {
+  const std::optional<LengthDrive>& drive = implementation_->state.cable_progress[cable].drive;
+  if (!drive || !drive->is_winch()) return std::nullopt;
+  const CableState& state = cables()[cable].state;
+  WinchView view;
+  view.at_end = drive->place == LengthDrive::Place::end;
+  if (drive->keeps_tension) {
+    view.kind = drive->tension > 0 ? WinchView::Kind::tension : WinchView::Kind::free_spool;
+    view.goal = drive->tension;
+  } else {
+    view.goal = state.length() + drive->debt + drive->left;
+    view.max_tension = drive->tension;
+  }
+  view.tension = state.tension[drive->segment];
+  view.speed = drive->rate + drive->slip;
+  view.slips = drive->slip > rounded_slip;
+  return view;
+}
+
 const std::vector<Obstacle>& World::obstacles() const {
   return implementation_->state.obstacles;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,7 +18,7 @@ namespace {
 using diagnostic_msgs::DiagnosticStatus;
 
 /// More would only make the message long.
-constexpr std::size_t most_waiting = 100;
+constexpr std::size_t most_listed = 100;
 
 std::string text(FrameStatus status) {
   switch (status) {
@@ -32,6 +33,16 @@ std::string text(FrameStatus status) {
     default:
       return "ok";
   }
+}
+
+/// `at the start, to 1.5 m with at most 20 N: 19.6 N, -0.5 m/s, slips`
+std::string text(const WinchView& winch) {
+  std::string kind = "free spool";
+  if (winch.kind == WinchView::Kind::tension) kind = "keeps " + number_text(winch.goal) + " N";
+  if (winch.kind == WinchView::Kind::length) kind = "to " + rounded_text(winch.goal) + " m";
+  if (winch.max_tension < infinity) kind += " with at most " + number_text(winch.max_tension) + " N";
+  return std::string("at the ") + (winch.at_end ? "end" : "start") + ", " + kind + ": " + rounded_text(winch.tension) + " N, " +
+         rounded_text(winch.speed) + " m/s" + (winch.slips ? ", slips" : "");
 }
 
 void summarize(SimulationReport::Phase phase, diagnostic_updater::DiagnosticStatusWrapper& status) {
@@ -92,7 +103,8 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("unsettled_cables", NameList(simulation_.world().findings().unsettled).text(""));  // without a static equilibrium
   NameList loads;
   for (const Load& load : simulation_.world().loads()) loads.add(load.name);
-  status.add("loads", loads.text(""));                                         // from outside, that act now
+  status.add("loads", loads.text(""));  // from outside, that act now
+  report_winches(status);
   status.add("found_inside_obstacles", NameList(report.intrusions).text(""));  // since the scene started
 
   summarize(report.phase, status);
@@ -123,8 +135,19 @@ void Diagnostics::report_simulation(Status& status) {
 void Diagnostics::report_waiting(Status& status) const {
   const std::vector<WaitingAttachment> waiting =
       waiting_attachments(simulation_.scene(), simulation_.world(), simulation_.frames().inputs());
-  for (std::size_t i = 0; i < std::min(waiting.size(), most_waiting); ++i)
+  for (std::size_t i = 0; i < std::min(waiting.size(), most_listed); ++i)
     status.add("waiting_attachment " + waiting[i].holds + "/" + waiting[i].name, waiting[i].frame);  // the missing frame
+}
+
+void Diagnostics::report_winches(Status& status) const {
+  const World& world = simulation_.world();
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < world.cables().size() && count < most_listed; ++i) {
+    const std::optional<WinchView> winch = world.view_winch(static_cast<int>(i));
+    if (!winch) continue;
+    status.add("winch " + world.cables()[i].model->name, text(*winch));  // that runs, or goes by its tension: what it does
+    ++count;
+  }
 }
 
 void Diagnostics::report_frames(Status& status) const {

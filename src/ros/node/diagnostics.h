@@ -19,6 +19,7 @@ class Diagnostics {
   void report_simulation(Status& status);
   /// Which attachments wait for which frames: a key `waiting_attachment CABLE/ATTACHMENT` each, the frame is its value.
   void report_waiting(Status& status) const;
+  void report_winches(Status& status) const;
   void report_frames(Status& status) const;
   void report_obstacles(Status& status) const;
 
