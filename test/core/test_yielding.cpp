@@ -86,6 +86,20 @@ TEST(SlidingSpring, LosesEnergyHoweverItIsBent) {
   }
 }
 
+/// However small its limit is, it slides to that, and no number underflows.
+TEST(SlidingSpring, HasTheSmallestOfLimits) {
+  for (const double limit : {1e-300, 1e-200, 1e-160, 1e-100, 1e-20})
+    for (const SlidingSpring& spring : {SlidingSpring{3, 3, limit, {}}, SlidingSpring{3, 0.2, limit, {}}})
+      for (const AboutAxes& strain : {AboutAxes{0.3, -0.4}, AboutAxes{-1e-9, 0}}) {
+        const Slide slide = spring.slide(strain);
+        EXPECT_NEAR(std::hypot(slide.strain.y, slide.strain.z) / limit, 1, 1e-14) << limit;
+        for (const double slope : {slide.yy, slide.zz}) {
+          EXPECT_GE(slope, 0) << limit;
+          EXPECT_LE(slope, 3 * limit / std::sqrt(dot(strain, strain))) << limit;
+        }
+      }
+}
+
 constexpr int segments = 20;
 
 /// A wire of a metre without weight, straight along x, clamped at the origin and in the frame "hand" at its end.
@@ -206,6 +220,22 @@ INSTANTIATE_TEST_SUITE_P(Laws, Yielding,
                            return std::string(std::get<0>(info.param).name) +
                                   (std::get<1>(info.param) > 0 ? "" : "WithoutTorsion");
                          });
+
+/// Beyond h (k - k_y) = k_y it yields back as it is let go, and keeps k_y (1 - h) / h.
+TEST(YieldingRod, YieldsBackWhereItWasBentFar) {
+  SceneDesc scene = wire();
+  MaterialDesc& material = scene.materials[0].material;
+  material.yield_curvature = 0.5;
+  material.hardening = 0.25;
+  World world(scene, initial_frames(scene));
+  constexpr double kept = 0.5 * 0.75 / 0.25;
+  bend_it(0, 4, 2000, world);
+  EXPECT_GT((1 - 0.25) * (4 - 0.5), 1.5 * kept);
+  bend_it(4, kept, 2000, world);
+  EXPECT_NEAR(world.attachments()[0].torque.z(), 0, 2e-3 * moment_at(4, material));
+  const double loss = 0.75 * stiffness * 0.5 * ((4 - 0.5) + (4 - kept - 2 * 0.5));
+  EXPECT_NEAR(yielded(world), loss, 5e-3 * loss);
+}
 
 /// Two bending stiffnesses: the yield curvature is that of any direction, the moment about each axis that of its stiffness.
 TEST(YieldingRod, BendsAboutEachOfItsAxes) {
@@ -468,6 +498,76 @@ TEST(YieldingState, IsLeftAtAWinch) {
     EXPECT_LT(plastic[near], 0.02) << at_end;
     EXPECT_GT(plastic[far], 0.05) << at_end;
     EXPECT_NEAR(world.ledger().unaccounted(), 0, 1e-4) << at_end;
+  }
+}
+
+/// A winch gives nodes out, and takes them in, beside a clamp that turns out of the plane in which the cable hangs. What resists
+/// no twist turns in its clamps as it likes, and brings none of that into the cable.
+TEST(YieldingState, IsHandedOverAtAWinchBesideATurnedClamp) {
+  for (const bool at_end : {false, true})
+    for (const bool rubs : {false, true})
+      for (const double length : {0.5, 0.3}) {
+        SceneDesc scene = scenes::one_cable(40, 0.4);
+        MaterialDesc& material = scene.materials[0].material;
+        material.linear_density = 0.1;
+        material.bending_stiffness = 0.02;
+        material.bending_damping = 1e-4;
+        (rubs ? material.bending_friction : material.yield_curvature) = rubs ? 0.01 : 15;
+        material.hardening = 0.1;
+        CableDesc& cable = scene.cables[0];
+        cable.attachments = {scenes::attachment("start", At::start, {0, 0, 0}, at_end ? "hand" : "", AttachmentType::clamp),
+                             scenes::attachment("end", At::end, {0.24, 0, 0}, at_end ? "" : "hand", AttachmentType::clamp)};
+        const Vector3 place = at_end ? Vector3(Vector3::Zero()) : Vector3(0.24, 0, 0);
+        for (auto& attachment : cable.attachments)
+          if (!attachment.frame.empty()) attachment.initial_pose = InitialPose{place.x(), 0, 0, 0, 0, 0};
+        World world(scene, initial_frames(scene));
+        ASSERT_TRUE(world.apply(edit::SetLength{0, at_end, length, 0.2}).ok);
+        BoundaryInputs inputs = initial_frames(scene);
+        double fastest = 0;
+        for (int i = 1; i <= 500; ++i) {
+          const double sine = std::sin(2 * M_PI * 0.001 * i), turned = 0.3 * sine * sine, moved = 0.2 * sine * sine;
+          const Vector3 axis = Vector3(0, 1, 1).normalized();
+          inputs[1] = {Pose{place + Vector3(0, moved, moved), Quaternion(Eigen::AngleAxisd(turned, axis))}, true};
+          ASSERT_EQ(world.step(inputs).status, Status::ok) << i;
+          for (const Vector3& velocity : world.cables()[0].state.velocities) fastest = std::max(fastest, velocity.norm());
+        }
+        EXPECT_LT(fastest, 5) << at_end << rubs << length;
+        EXPECT_EQ(world.ledger().unaccounted_steps, 0) << at_end << rubs << length;
+        EXPECT_NEAR(world.ledger().unaccounted(), 0, 1e-4 * 0.04 * 9.81 * 0.4) << at_end << rubs << length;
+      }
+}
+
+/// A hose whose strands rub hangs through an eyelet, clamped at both ends, of which one goes up and down: nodes pass the eyelet,
+/// and no energy comes from nowhere.
+TEST(YieldingState, PassesEyelets) {
+  SceneDesc scene = scenes::one_cable(10, 1.2);
+  MaterialDesc& material = scene.materials[0].material;
+  material.linear_density = 0.04;
+  material.bending_stiffness = 0.015;
+  material.torsional_stiffness = 0.02;
+  material.bending_damping = 3e-4;
+  material.axial_stiffness = 2e4;
+  material.bending_friction = 0.004;
+  CableDesc& cable = scene.cables[0];
+  cable.attachments = {scenes::attachment("hand", At::start, {0, 0, 0}, "hand", AttachmentType::clamp),
+                       scenes::attachment("end", At::end, {0.72, 0, 0}, "", AttachmentType::clamp)};
+  cable.attachments[0].initial_pose = InitialPose{0, 0, 0, 0, 0, 0};
+  GuideDesc& guide = scene.guides.emplace_back();
+  guide.name = "guide";
+  guide.cable = "cable";
+  guide.place = PlaceDesc{At::arc_length, 0.6};
+  guide.offset = {0.36, 0, -0.1};
+  guide.friction = 0.1;
+  World world(scene, initial_frames(scene));
+  BoundaryInputs inputs = initial_frames(scene);
+  const double scale = 0.04 * 9.81 * 1.2 * 1.2;
+  double before = yielded(world);
+  for (int i = 1; i <= 1000; ++i) {
+    inputs[1] = {Pose{{0, 0, 0.03 * std::pow(std::sin(2 * M_PI * 0.001 * i), 3)}, Quaternion::Identity()}, true};
+    ASSERT_NE(world.step(inputs).status, Status::fault) << i;
+    ASSERT_GE(yielded(world), before - 1e-15) << i;
+    before = yielded(world);
+    ASSERT_NEAR(world.ledger().unaccounted(), 0, 5e-3 * scale) << i;
   }
 }
 

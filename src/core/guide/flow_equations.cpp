@@ -524,12 +524,10 @@ void CableStepper::begin_flow_projection(const Substep& s, const CableState& sta
 }
 
 /// The frame of a segment that flows on is that of other material then, in its middle.
-void CableStepper::carry_frames_with_flows(CableState& state) const {
+void CableStepper::carry_frames_with_flows(const CableModel& model, CableState& state) const {
   const auto twist_rate = [&](int node) {
     if (node < 0 || node > segments_) return 0.0;
-    const double around =
-        node == 0 || node == segments_ ? 0.5 * state.rest_lengths[std::min(node, segments_ - 1)] : joint_length(state, node);
-    return state.joint_twist[node] / around;
+    return material_twist(model, state, node) / joint_length(state, node);
   };
   for (const Flow& flow : flows_) {
     // Where what comes to the middle is now

@@ -4,9 +4,12 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "guide/side.h"
+#include "rod/kirchhoff_rod.h"
 #include "rod/rod_frames.h"
+#include "target/kinematic_targets.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "world/energy.h"
 
@@ -37,6 +40,7 @@ class GivenNode {
     start_masses_ = {cable_.masses[guide_], cable_.masses[next_]};
     regular_ = state.cables[index].model->segment_length;
     half_density_ = 0.5 * CableMaterials(state.cables[index])[near_segment_].linear_density;
+    bending_memory_ = cable_.bending_memory;
   }
 
   /// Puts it at the place, next to where it is, at which the cable has an energy [J]; if there is none, where that differs least.
@@ -93,6 +97,8 @@ class GivenNode {
     cable_.rest_lengths[far_segment_] = length_ - near;
     cable_.masses[guide_] = start_masses_[0] + half_density_ * (near - start_);
     cable_.masses[next_] = start_masses_[1] - half_density_ * (near - start_);
+    cable_.bending_memory = bending_memory_;
+    yield_to_given_nodes(index_, state_);
   }
 
   /// Where it is none: regula falsi, where a side that stays counts half.
@@ -124,10 +130,25 @@ class GivenNode {
   double stretch_ = 1;
   Vector3 along_ = Vector3::Zero(), across_ = Vector3::Zero();
   std::array<double, 2> start_masses_{0, 0};
+  std::vector<std::array<HalfBend, 2>> bending_memory_;  // before it is bent there
   double half_density_ = 0;
 };
 
 }  // namespace
+
+void yield_to_given_nodes(int cable, State& state) {
+  SimulatedCable& c = state.cables[cable];
+  if (c.state.bending_memory.empty()) return;
+  const KinematicTargets& targets = state.cable_progress[cable].targets;
+  std::vector<HeldDirection> directions;
+  hold_directions_at(0, 0, targets, directions);
+  hold_directions_on_bodies(state.attachments, state.bodies, targets, directions);
+  std::vector<int> shaped;
+  for (const Attachment& attachment : state.attachments)
+    if (attachment.body == cable_id(cable) && is_wheel(attachment))
+      shaped.insert(shaped.end(), {attachment.node, last_node(attachment)});
+  yield_to_shape(*c.model, directions, shaped, c.state);
+}
 
 void place_given_node(int cable, const Attachment& guide, int side, const Vector3& bulge, double energy, State& state) {
   GivenNode(cable, guide, side, bulge, state).place_at(energy);

@@ -9,4 +9,7 @@ namespace verlet_cable {
 /// in the direction `bulge`, and the strain stays.
 void place_given_node(int cable, const Attachment& guide, int side, const Vector3& bulge, double energy, State& state);
 
+/// Nodes that were given out, or taken in, have bent a cable at once: it yields to that, but where a wheel bends it.
+void yield_to_given_nodes(int cable, State& state);
+
 }  // namespace verlet_cable

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "chain/direction.h"
+#include "guide/given_node.h"
 #include "guide/guides.h"
 #include "guide/node_passing.h"
 #include "guide/wheel.h"
@@ -185,6 +186,7 @@ void World::Implementation::capture_cable(int index) {
   put_on(cable_index, node + 1, state);
   after_remeshing(cable_index);
   move_with_holders(cable_index, state);
+  yield_to_given_nodes(cable_index, state);
   // As of a node that passes; but what it does to the motion is a blow.
   guide.held_energy = energy - energy_of_cable(state, cable_index).potential();
   account_for_blow(cable_index);

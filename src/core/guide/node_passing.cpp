@@ -291,6 +291,7 @@ bool pass_nodes(int index, bool moves, State& state) {
       guide.held_energy *= held_part(guide.held_way / regular);
       guide.held_way = 0;
       guide.last_way = way;
+      yield_to_given_nodes(index, state);
       const Energy after = energy_of_cable(state, index);
       const double moved = std::max(0.0, before.kinetic - after.kinetic);
       guide.held_energy += before.total() - after.total() - moved;

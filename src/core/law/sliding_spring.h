@@ -54,28 +54,31 @@ inline Slide SlidingSpring::slide(const AboutAxes& strain) const {
   if (!(y_stiffness > 0 && z_stiffness > 0 && square > limit * limit)) return {strain, y_stiffness, 0, z_stiffness};
   // The nearest place x on the disc's edge has K (x - strain) = -multiplier x. Newton's method on 1 / |x|, which comes from one
   // side, and for a spring that is alike about both axes is there at once (Moré and Sorensen, Computing a Trust Region Step,
-  // 1983).
+  // 1983). In parts of the strain, and x times the softer axis' resistance, so that the smallest of limits has a place, too.
   constexpr int most_iterations = 60;
   constexpr double rounding = 1e-15;
-  double multiplier = 0, y_give = 0, z_give = 0, give = 0;
-  AboutAxes nearest;
+  const double size = std::sqrt(square), part = limit / size;
+  const AboutAxes resisted{y_stiffness * strain.y / size, z_stiffness * strain.z / size};
+  const double softer = std::fmin(y_stiffness, z_stiffness);
+  double resistance = softer, y_give = 0, z_give = 0, give = 0, length = 0;  // resistance: of the softer axis, and the multiplier
+  AboutAxes along;
   for (int i = 0; i < most_iterations; ++i) {
-    y_give = 1 / (y_stiffness + multiplier);
-    z_give = 1 / (z_stiffness + multiplier);
-    nearest = {y_stiffness * y_give * strain.y, z_stiffness * z_give * strain.z};
-    give = y_give * nearest.y * nearest.y + z_give * nearest.z * nearest.z;
-    const double size_square = dot(nearest, nearest);
-    const double step = size_square / give * (std::sqrt(size_square) / limit - 1);
-    if (!(step > rounding * (multiplier + std::fmin(y_stiffness, z_stiffness)))) break;
-    multiplier += step;
+    y_give = 1 / (1 + (y_stiffness - softer) / resistance);
+    z_give = 1 / (1 + (z_stiffness - softer) / resistance);
+    along = {y_give * resisted.y, z_give * resisted.z};
+    give = y_give * along.y * along.y + z_give * along.z * along.z;
+    length = std::sqrt(dot(along, along));
+    const double step = length * length / give * (length / part - resistance);
+    if (!(step > rounding * resistance)) break;
+    resistance += step;
   }
   // Its derivative: as if it moved on with the strain, less what would leave the disc.
   const double y = y_stiffness * y_give, z = z_stiffness * z_give;
-  const double along_y = y * nearest.y, along_z = z * nearest.z;
-  Slide slide{(limit / std::sqrt(dot(nearest, nearest))) * nearest};
-  slide.yy = y * y_stiffness - along_y * along_y / give;
-  slide.yz = -along_y * along_z / give;
-  slide.zz = z * z_stiffness - along_z * along_z / give;
+  const double along_y = y * along.y, along_z = z * along.z;
+  Slide slide{(limit / length) * along};
+  slide.yy = (y * y_stiffness - along_y * along_y / give) / resistance;
+  slide.yz = -along_y * along_z / give / resistance;
+  slide.zz = (z * z_stiffness - along_z * along_z / give) / resistance;
   return slide;
 }
 

@@ -132,7 +132,7 @@ void CableStepper::finish(const Substep& s, bool struck, CableState& state, Subs
     project(s, state.masses, result);
   result.max_strain = store(s, state);
   if (rod_.active()) rod_.store(s.boundary, state);
-  if (rod_.active() && !flows_.empty()) carry_frames_with_flows(state);
+  if (rod_.active() && !flows_.empty()) carry_frames_with_flows(s.model, state);
   if (s.treatment != Treatment::none) quieten(s, state, result);
   if (twist_.active()) twist_.follow(s.boundary.directions, state.positions, s.spans);
   if (!is_balanced) return;

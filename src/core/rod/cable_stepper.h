@@ -148,7 +148,7 @@ class CableStepper {
   Vector3 flow_reaction(const Substep& substep, int node) const;
   void begin_flow_projection(const Substep& substep, const CableState& state);
   void finish_flows(const Substep& substep, CableState& state);
-  void carry_frames_with_flows(CableState& state) const;
+  void carry_frames_with_flows(const CableModel& model, CableState& state) const;
   FlowRate rate_of(const Substep& substep, const Flow& flow) const;
   void project_flows(const Substep& substep);
   void push_flows(const Substep& substep, SubstepResult& result);

@@ -116,10 +116,14 @@ double energy_slope(const JointStiffness& stiffness, const JointAngles& angles, 
   };
   const AboutAxes angle{angles.y, angles.z};
   const SlidingSpring &yielding = stiffness.yielding, &friction = stiffness.friction;
+  /// What bends a spring, and is at rest with it, once that has slid.
+  const auto bend_of = [&](const SlidingSpring& spring) {
+    return AboutAxes{stiffness.rest.y, stiffness.rest.z} + spring.slide(strain_of(spring, stiffness.rest, angles)).strain;
+  };
   return slope(stiffness.twist, angles.twist, stiffness.rest.twist) +
          bent(stiffness.bend_y - yielding.y_stiffness, stiffness.bend_z - yielding.z_stiffness, angle) +
-         bent(yielding.y_stiffness, yielding.z_stiffness, angle - yielding.slid) +
-         bent(friction.y_stiffness, friction.z_stiffness, angle - friction.slid);
+         bent(yielding.y_stiffness, yielding.z_stiffness, bend_of(yielding)) +
+         bent(friction.y_stiffness, friction.z_stiffness, bend_of(friction));
 }
 
 /// Calls visitor(stiffness, angles, node, segment, whether the segment comes after the clamp) for every joint of a whole rod,
@@ -228,6 +232,11 @@ void KirchhoffRod::start_joints(const CableModel& model, const CableState& state
       if (joint.node == direction.node) joint.stiffness = {};
   }
   joints_.start(frames_.start, 0, frames_.start, 1, 1, n);
+  if (!slides_) return;
+  for (ChangingJoint& joint : changing_) {
+    joint.stiffness.yielding.slid = joints_.start_yielded(joint.node);
+    joint.stiffness.friction.slid = joints_.start_slipped(joint.node);
+  }
 }
 
 /// Over the middles of the segments beside a guide; at its wheel no bending moment resists.
@@ -587,10 +596,12 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
   return sum;
 }
 
-void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, CableState& state) {
+void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<int>& shaped,
+                    CableState& state) {
   if (state.bending_memory.empty() || state.directors.empty()) return;
   visit_rod_joints(model, state, directions,
                    [&](const JointStiffness& stiffness, const JointAngles& angles, int node, int segment, bool after) {
+                     if (segment < 0 && std::find(shaped.begin(), shaped.end(), node) != shaped.end()) return;
                      const auto slid = [&](const SlidingSpring& spring) {
                        const AboutAxes strain = strain_of(spring, stiffness.rest, angles);
                        return strain - spring.slide(strain).strain;

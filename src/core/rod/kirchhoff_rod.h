@@ -137,7 +137,8 @@ RodEnergy rod_energy(const CableModel& model, const CableState& state, const std
                      const std::vector<int>& shaped);
 
 /// Lets a whole rod that was given its shape at once, and not by motion, yield as far as it does in that shape. Its clamps hold
-/// `directions` at their ends.
-void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, CableState& state);
+/// `directions` at their ends. `shaped`: nodes between segments that do not yield to it.
+void yield_to_shape(const CableModel& model, const std::vector<HeldDirection>& directions, const std::vector<int>& shaped,
+                    CableState& state);
 
 }  // namespace verlet_cable

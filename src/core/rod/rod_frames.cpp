@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "rod/material_frames.h"
+#include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/rotation.h"
 
 namespace verlet_cable {
@@ -102,6 +103,13 @@ Eigen::Matrix3d segment_frame(const CableState& state, int segment) {
 
 double joint_length(const CableState& state, int node) {
   return (node > 0 ? half_length(state, node - 1) : 0) + (node < state.segments() ? half_length(state, node) : 0);
+}
+
+double material_twist(const CableModel& model, const CableState& state, int node) {
+  const int n = state.segments();
+  const bool is_end = node == 0 || node == n;
+  if (is_end && CableMaterials(model, state)[std::min(node, n - 1)].torsional_stiffness == 0) return 0;
+  return state.joint_twist[node];
 }
 
 JointAngles rest_angles(const CableState& state, int node, double length) {

@@ -18,14 +18,18 @@ Eigen::Matrix3d segment_frame(const CableState& state, int segment);
 /// [m] of cable around a node, halfway to its neighbours.
 double joint_length(const CableState& state, int node);
 
+/// [rad] By which the material of a joint is twisted. At an end whose material resists no twist it is by none, however far the
+/// clamp there has turned against it.
+double material_twist(const CableModel& model, const CableState& state, int node);
+
 /// The angles that `length` [m] of cable at a node has unloaded.
 JointAngles rest_angles(const CableState& state, int node, double length);
 
 /// The rotation from the one frame of a joint to the other, seen from the one.
 Eigen::Matrix3d joint_rotation(const JointAngles& angles);
 
-/// Axes of the material at a node where nothing but the cable's own stiffness acts: halfway between its segments; at an end as the
-/// unloaded shape goes on from the segment.
+/// Axes of the material at a node where nothing but the cable's own stiffness acts: halfway between its segments; at an end as
+/// the unloaded shape goes on from the segment.
 Eigen::Matrix3d node_frame(const CableState& state, int node);
 
 /// Axes of the cable at a node, also of one without frames: x along it.
@@ -66,8 +70,8 @@ void measure_joint_twists(std::vector<DirectionTarget>& clamps, CableState& stat
 /// After clamps were turned: the first one twists the cable by that, the others are rolled so that they do not.
 void roll_clamps_to_twist(std::vector<DirectionTarget>& clamps, CableState& state);
 
-/// Turns the clamps after the first that may be turned so that the cable has its rest twist, altogether, between each two of them,
-/// and from the first clamp on. Returns the largest twist that was taken away [rad].
+/// Turns the clamps after the first that may be turned so that the cable has its rest twist, altogether, between each two of
+/// them, and from the first clamp on. Returns the largest twist that was taken away [rad].
 double take_excess_twist(std::vector<DirectionTarget>& clamps, const std::function<bool(const DirectionTarget&)>& may_turn,
                          CableState& state);
 

@@ -146,6 +146,7 @@ void RodJoints::resize(int count) {
   twisting_loss.assign(size, 0.0);
   sliding_loss.assign(size, 0.0);
   for (std::vector<SlidingSpring>* springs : {&yielding_, &friction_}) springs->assign(size, {});
+  at_once_.assign(size, {});
   for (std::vector<AboutAxes>* slid : {&end_yielded_, &end_slipped_}) slid->assign(size, {});
   moment.assign(size, 0.0);
   convex_stiffness.assign(size, 0.0);
@@ -155,6 +156,10 @@ void RodJoints::resize(int count) {
 void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {
   set_stiffness(joint, stiffness);
   twist_[joint] = twist;
+  if (!slides_) return;
+  yielding_[joint].slid = stiffness.yielding.slid;
+  friction_[joint].slid = stiffness.friction.slid;
+  at_once_[joint] = {stiffness.yielding.slid, stiffness.friction.slid, 0};
 }
 
 void RodJoints::set_stiffness(int joint, const JointStiffness& stiffness) {
@@ -167,8 +172,11 @@ void RodJoints::set_stiffness(int joint, const JointStiffness& stiffness) {
   rest_y_[joint] = stiffness.rest.y;
   rest_z_[joint] = stiffness.rest.z;
   if (!slides_) return;
-  yielding_[joint] = stiffness.yielding;
-  friction_[joint] = stiffness.friction;
+  const auto set = [](const SlidingSpring& from, SlidingSpring& to) {
+    to = {from.y_stiffness, from.z_stiffness, from.limit, to.slid};
+  };
+  set(stiffness.yielding, yielding_[joint]);
+  set(stiffness.friction, friction_[joint]);
 }
 
 void RodJoints::start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first,
@@ -189,6 +197,20 @@ void RodJoints::start(const FrameArrays& frames_before, int before, const FrameA
     put(chi(q.u), chi_, i);
     put(half.sine, half_sine_, i);
     put(half.cosine, half_cosine_, i);
+    if (!slides_ || slides_from_memory_) continue;
+    const Pair scale = chi(q.u);
+    const Pair strain_y = scale * (half.cosine * q.y + half.sine * q.z) - neighbours(rest_y_, i);
+    const Pair strain_z = scale * (half.cosine * q.z - half.sine * q.y) - neighbours(rest_z_, i);
+    for (int lane = 0; lane < 2 && i + lane < last; ++lane) slide_at_once(i + lane, {strain_y[lane], strain_z[lane]});
+  }
+}
+
+/// `strain` [rad]: the joint's angles at the start beyond those at rest.
+void RodJoints::slide_at_once(int joint, const AboutAxes& strain) {
+  for (SlidingSpring* spring : {&yielding_[joint], &friction_[joint]}) {
+    const AboutAxes found = strain - spring->slid, left = spring->slide(found).strain;
+    at_once_[joint].loss += spring->energy(found) - spring->energy(left);
+    spring->slid = spring->slid + (found - left);
   }
 }
 
@@ -201,15 +223,13 @@ struct RodJoints::Slid {
 /// `start` [rad]: the joint's angles beyond those at rest; `change`: of them, over the substep.
 RodJoints::Slid RodJoints::slide(int joint, double part, const AboutAxes& start, const AboutAxes& change) {
   Slid sum;
-  sliding_loss[joint] = 0;
+  sliding_loss[joint] = at_once_[joint].loss;
   const auto add = [&](const SlidingSpring& spring, AboutAxes& end_slid) {
-    // What was bent at once, not by motion, slides before it moves on.
-    const AboutAxes found = start - spring.slid, before = slides_from_memory_ ? found : spring.slide(found).strain;
-    const AboutAxes tried = before + change;
+    const AboutAxes before = start - spring.slid, tried = before + change;
     const Slide after = spring.slide(tried);
     const AboutAxes slid = tried - after.strain, moment = spring.moment(before + part * (after.strain - before));
-    end_slid = spring.slid + (found - before) + slid;
-    sliding_loss[joint] += spring.energy(found) - spring.energy(before) + dot(moment, slid);
+    end_slid = spring.slid + slid;
+    sliding_loss[joint] += dot(moment, slid);
     sum.moment = sum.moment + moment;
     sum.yy += part * after.yy;
     sum.yz += part * after.yz;

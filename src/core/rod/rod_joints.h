@@ -94,6 +94,7 @@ class RodJoints {
     slides_from_memory_ = from_memory;
   }
   void set(int joint, const JointStiffness& stiffness, double twist);
+  /// Without what its springs have slid by.
   void set_stiffness(int joint, const JointStiffness& stiffness);
   /// Finds the angles at the start. `before`, `after`: index of the first joint's frames; joints `first` to `last` (exclusive).
   /// Twist that is not what the frames have is corrected.
@@ -106,9 +107,11 @@ class RodJoints {
   const SymmetricArray& stiffness() const { return is_exact_ ? exact_stiffness : convex_stiffness; }
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
-  /// [rad] By which springs have slid over the substep.
-  AboutAxes yielded(int joint) const { return end_yielded_[joint] - yielding_[joint].slid; }
-  AboutAxes slipped(int joint) const { return end_slipped_[joint] - friction_[joint].slid; }
+  /// [rad] By which springs have slid at the start, and since what they remember.
+  AboutAxes start_yielded(int joint) const { return yielding_[joint].slid; }
+  AboutAxes start_slipped(int joint) const { return friction_[joint].slid; }
+  AboutAxes yielded(int joint) const { return end_yielded_[joint] - at_once_[joint].remembers_yielded; }
+  AboutAxes slipped(int joint) const { return end_slipped_[joint] - at_once_[joint].remembers_slipped; }
 
   std::vector<double> bending_loss, twisting_loss;  ///< [J] what damping takes in the substep
   std::vector<double> sliding_loss;                 ///< [J] and what springs that slide do; not set where none does
@@ -119,6 +122,13 @@ class RodJoints {
   SymmetricArray convex_stiffness, exact_stiffness;
 
  private:
+  /// What was bent at once, not by motion, slides at the start.
+  struct SlidAtOnce {
+    AboutAxes remembers_yielded, remembers_slipped;  ///< [rad] by which springs had slid before that
+    double loss = 0;                                 ///< [J]
+  };
+
+  void slide_at_once(int joint, const AboutAxes& strain);
   template <bool slides>
   void evaluate_joints(double part, const FrameMotion& frames_before, int before, const FrameMotion& frames_after, int after,
                        int first, int last);
@@ -137,6 +147,7 @@ class RodJoints {
   std::vector<double> end_twist_;  // [rad]
   // Where springs slide
   std::vector<SlidingSpring> yielding_, friction_;
+  std::vector<SlidAtOnce> at_once_;
   std::vector<AboutAxes> end_yielded_, end_slipped_;  // of the present iterate
 };
 

@@ -212,7 +212,7 @@ void insert_node(int segment, double first, const CableModel& model, CableState&
   std::array<double, 2> turns{0, 0};  // [rad] from the segment's middle to those of its parts
   if (!state.joint_twist.empty()) {
     // Twist goes on evenly.
-    const auto twist_rate = [&](int at) { return state.joint_twist[at] / joint_length(state, at); };
+    const auto twist_rate = [&](int at) { return material_twist(model, state, at) / joint_length(state, at); };
     turns = {0.5 * second * twist_rate(segment), 0.5 * first * twist_rate(node)};
   }
   duplicate_node(node, state);

@@ -206,12 +206,12 @@ namespace {
 
 /// The same of a whole rod: joints grow with the cable that they stand for, and the material that is in the clamp is turned
 /// against what was there before.
-void pass_twist_through_winch(const LengthDrive& drive, CableState& state, KinematicTargets& targets) {
+void pass_twist_through_winch(const LengthDrive& drive, const CableModel& model, CableState& state, KinematicTargets& targets) {
   const int n = state.segments(), end = drive.end_node(n), next = end == 0 ? 1 : n - 1;
   const double side = end == 0 ? -1 : 1;
   const auto grow = [&](int node) {
     const double length = joint_length(state, node), before = length - 0.5 * drive.fed();
-    const double turn = state.joint_twist[node] * (length / before - 1);
+    const double turn = material_twist(model, state, node) * (length / before - 1);
     state.joint_twist[node] += turn;
     return side * turn;
   };
@@ -239,7 +239,7 @@ void complete_drive_step(int index, State& state) {
       span.angle += change;
       span.origin -= change;
     }
-    if (!cable.state.directors.empty()) pass_twist_through_winch(drive, cable.state, memory.targets);
+    if (!cable.state.directors.empty()) pass_twist_through_winch(drive, *cable.model, cable.state, memory.targets);
     // What comes out of a winch remembers nothing, what it takes in is forgotten.
     const double out = drive.fed();
     if (!cable.state.bending_memory.empty())

@@ -443,7 +443,7 @@ void World::Implementation::yield_to_shape(int index) {
   std::vector<HeldDirection> directions;
   hold_directions_at(0, 0, targets, directions);
   hold_directions_on_bodies(state.attachments, state.bodies, targets, directions);
-  verlet_cable::yield_to_shape(*cable.model, directions, cable.state);
+  verlet_cable::yield_to_shape(*cable.model, directions, {}, cable.state);
 }
 
 /// After a change of what holds a cable, of its nodes, or of its materials.
