@@ -77,6 +77,24 @@ std::vector<TunableNumber> tunable_numbers(const SceneDesc& scene) {
 
 namespace {
 
+/// A number that is .inf in the scene, and so is not among those that are tuned.
+bool is_infinite_in(const SceneDesc& scene, const std::string& name) {
+  for (const NamedMaterial& named : scene.materials)
+    for (const auto& field : material_fields)
+      if (name == named.name + "_" + field.key && named.material.*field.member == infinity) return true;
+  return false;
+}
+
+/// What the scene says against numbers that are right each by itself.
+std::vector<std::string> conflicts(const SceneDesc& scene, const std::vector<NumberChange>& changes) {
+  std::vector<std::string> errors = validate(scene);
+  std::string tuned;
+  for (const NumberChange& change : changes)
+    tuned += (tuned.empty() ? "tuning." : ", tuning.") + change.name + ": " + number_text(change.value);
+  for (std::string& error : errors) error = tuned + "; does not go with " + error;
+  return errors;
+}
+
 /// Parameters that are named one by one.
 constexpr std::size_t most_unknown = 100;
 
@@ -93,7 +111,12 @@ SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers
   std::size_t unknown = 0;
   for (const NumberChange& change : changes) {
     const auto number = std::find_if(numbers.begin(), numbers.end(), [&](const auto& n) { return n.name == change.name; });
-    if (number == numbers.end()) {
+    if (number == numbers.end() && is_infinite_in(scene, change.name)) {
+      errors.push_back(
+          "tuning." + change.name + ": " + number_text(change.value) +
+          "; allowed: .inf, which it is in the scene: what does not stretch, twist or yield there never does. A number "
+          "in the scene can be tuned");
+    } else if (number == numbers.end()) {
       if (++unknown <= most_unknown)
         errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + names_of(numbers));
     } else if (!number->range.contains(change.value)) {
@@ -103,7 +126,7 @@ SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers
     }
   }
   if (unknown > most_unknown) errors.push_back("tuning: " + std::to_string(unknown - most_unknown) + " more unknown parameters");
-  if (errors.empty()) errors = validate(scene);
+  if (errors.empty()) errors = conflicts(scene, changes);
   if (!errors.empty()) throw SceneError(std::move(errors));
   return scene;
 }

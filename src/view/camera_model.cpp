@@ -14,7 +14,6 @@ namespace verlet_cable::view {
 namespace {
 
 constexpr double not_seen = std::numeric_limits<double>::quiet_NaN();
-constexpr int most_pixels = 16384;  // of a side: what x times y still fits into an int
 constexpr Range fov_range{0.01, 3.12, "any number above 0 and below pi"};
 constexpr Range near_range{1e-4, 1e6, "any number above 0"};
 constexpr Range focal_range{1e-3, 1e9, "any number above 0"};
@@ -103,6 +102,20 @@ std::vector<std::array<double, 2>> find_sights(const CameraModel& model) {
   return sights;
 }
 
+/// Unit.
+Vector3 line_of_sight(const Vector3& eye, const Vector3& target) {
+  const Vector3 way = target - eye;
+  const double distance = way.norm();
+  if (!(distance > 0 && distance < infinity)) throw std::invalid_argument("target: the place of eye; allowed: any other");
+  return way / distance;
+}
+
+/// Whether `up` says how a camera that looks along z is turned about that.
+bool is_across(const Vector3& z, const Vector3& up) {
+  const double across = z.cross(up).norm();
+  return across > 1e-9 * up.norm() && across < infinity;
+}
+
 }  // namespace
 
 std::vector<std::string> validate(const CameraDesc& desc) {
@@ -143,17 +156,21 @@ CameraModel camera_model(const CameraDesc& desc) {
 }
 
 Pose look_at(const Vector3& eye, const Vector3& target, const Vector3& up) {
-  const Vector3 way = target - eye;
-  const double distance = way.norm();
-  if (!(distance > 0 && distance < infinity)) throw std::invalid_argument("target: the place of eye; allowed: any other");
-  const Vector3 z = way / distance;
+  const Vector3 z = line_of_sight(eye, target);
+  if (!is_across(z, up))
+    throw std::invalid_argument("up: " + list_text(up) +
+                                ", along the line of sight, or without length; allowed: any other direction, such as " +
+                                (is_across(z, Vector3::UnitZ()) ? "[0, 0, 1]" : "[0, 1, 0] for what is seen from above"));
   const Vector3 across = z.cross(up);
-  if (!(across.norm() > 1e-9 * up.norm() && across.norm() < infinity))
-    throw std::invalid_argument("up: along the line of sight, or without length; allowed: any other direction");
   const Vector3 x = across.normalized();
   Eigen::Matrix3d axes;
   axes << x, z.cross(x), z;
   return {eye, Quaternion(axes).normalized()};
+}
+
+Pose look_at(const Vector3& eye, const Vector3& target) {
+  const Vector3 z = line_of_sight(eye, target);
+  return look_at(eye, target, is_across(z, Vector3::UnitZ()) ? Vector3::UnitZ() : Vector3::UnitY());
 }
 
 std::array<double, 2> project(const CameraModel& model, const Vector3& point) {

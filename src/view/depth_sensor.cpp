@@ -41,11 +41,11 @@ void measure_row(const CameraModel& model, const SensorModel& sensor, const Nois
     const std::size_t pixel = static_cast<std::size_t>(row) * model.width + column;
     measured[column] = no_return;
     const double depth = truth.depth[pixel], cosine = truth.cosine[pixel];
-    if (std::isnan(depth) || cosine < 0 || (sensor.dropout_angle < 90 && cosine < least_cosine)) continue;
+    if (!(depth >= model.near) || cosine < 0 || (sensor.dropout_angle < 90 && cosine < least_cosine)) continue;
     if (sensor.edge_dropout > 0 && is_beside_edge(model, truth.depth, column, row, sensor.edge_step) &&
         random.uniform(pixel, for_edges) < sensor.edge_dropout)
       continue;
-    const double deviation = std::max(a + depth * (b + depth * c), 0.0);
+    const double deviation = a + depth * (b + depth * c);
     double seen = depth;
     if (deviation > 0) seen += deviation * normal_quantile(random.uniform(pixel, for_noise));
     if (sensor.disparity_step > 0) {

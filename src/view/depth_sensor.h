@@ -8,7 +8,7 @@ namespace verlet_cable::view {
 
 /// What a sensor makes of depths. All of these have one number a pixel, row by row.
 struct TrueDepth {
-  const float* depth;   ///< [m] NaN where nothing is seen
+  const float* depth;   ///< [m] also below `near`; NaN where nothing is seen
   const float* cosine;  ///< of the angle between line of sight and normal; below 0 where the second imager sees nothing
 };
 

@@ -119,7 +119,7 @@ Tube tube_of(const SimulatedCable& cable, const DrawingOptions& options) {
 
 /// Only what is sound: a world that went wrong is still looked at.
 Thing net_thing(const SimulatedNet& net, const Color& color, double radius) {
-  Thing thing{net.model.name, Thing::Kind::other, plain(color)};
+  Thing thing{net.model.name, Thing::Kind::net, plain(color)};
   for (const auto& [first, last] : net.model.links) {
     Tube cord{{net.state.positions[first], net.state.positions[last]}, {radius}, {}};
     if (is_sound(cord)) thing.tubes.push_back(std::move(cord));
@@ -144,7 +144,7 @@ std::vector<std::string> validate(const Drawing& drawing) {
     const Thing& thing = drawing.things[i];
     const std::string name = "things[" + std::to_string(i) + "]";
     errors.require(i == 0 || drawing.things[i - 1].kind <= thing.kind, name, "out of order",
-                   "cables first, then bodies, then the others");
+                   "cables, nets, particles, bodies and the others, in this order");
     errors.require(is_sound(thing.look), name + ".look", "out of range", "colors and shininess from 0 to 1, sizes above 0");
     errors.require(verlet_cable::is_sound(thing.pose), name + ".pose", "not a pose", "finite numbers, and a unit quaternion");
     for (std::size_t k = 0; k < thing.tubes.size(); ++k)
@@ -203,23 +203,23 @@ Drawing drawing_of(const World& world, const DrawingOptions& options) {
     drawing.things.push_back(cable(simulated.model->name, tube_of(simulated, options), colors.of_cable(i), options.stripes));
     if (!is_sound(drawing.things.back().tubes.front())) drawing.things.back().tubes.clear();
   }
+  for (std::size_t i = 0; i < world.nets().size(); ++i)
+    drawing.things.push_back(
+        net_thing(world.nets()[i], colors.of_net(world, i), std::max(options.net_link_radius, options.least_radius)));
+  for (const SimulatedParticle& particle : world.particles()) {
+    Thing thing{particle.desc.name, Thing::Kind::particle, plain(color_of(particle.desc.color))};
+    if (are_sound({particle.position})) {
+      thing.pose.position = particle.position;
+      thing.parts.push_back({{}, SphereShape{particle.desc.radius}, {}});
+    }
+    drawing.things.push_back(std::move(thing));
+  }
   for (const SimulatedBody& body : world.bodies()) {
     if (body.is_junction) continue;
     Thing thing{body.name, Thing::Kind::body, body_look()};
     if (verlet_cable::is_sound(body.pose)) {
       thing.pose = body.pose;
       for (const BodyShape& shape : body.shapes) thing.parts.push_back({shape.pose, shape.shape, {}});
-    }
-    drawing.things.push_back(std::move(thing));
-  }
-  for (std::size_t i = 0; i < world.nets().size(); ++i)
-    drawing.things.push_back(
-        net_thing(world.nets()[i], colors.of_net(world, i), std::max(options.net_link_radius, options.least_radius)));
-  for (const SimulatedParticle& particle : world.particles()) {
-    Thing thing{particle.desc.name, Thing::Kind::other, plain(color_of(particle.desc.color))};
-    if (are_sound({particle.position})) {
-      thing.pose.position = particle.position;
-      thing.parts.push_back({{}, SphereShape{particle.desc.radius}, {}});
     }
     drawing.things.push_back(std::move(thing));
   }

@@ -57,12 +57,18 @@ class Painter {
         model_(lens.model()),
         axes_(pose.orientation.normalized().toRotationMatrix()),
         eye_(pose.position),
+        second_eye_(pose.position + sensor.baseline * axes_.col(0)),
+        housing_(stage_.around(eye_)),
         sensor_(sensor),
         noise_(noise),
         images_(images),
         wants_depth_(images.depth || images.points),
         measures_(wants_depth_ && !is_perfect(sensor)),
         footprint_(images.rgb ? 1 / std::min(model_.fx, model_.fy) : 0) {
+    if (sensor.baseline != 0) {
+      const auto around_second = stage_.around(second_eye_);
+      housing_.insert(housing_.end(), around_second.begin(), around_second.end());
+    }
     const std::size_t pixels = static_cast<std::size_t>(model_.width) * model_.height;
     if (measures_) cosine_.resize(pixels);
     if (measures_ || (wants_depth_ && !images.depth)) depth_.resize(pixels);
@@ -107,7 +113,7 @@ class Painter {
       const auto& [x, y] = lens_.sight(column, row);
       square.pixels[i] = static_cast<std::size_t>(row) * model_.width + column;
       square.lines[i] = {eye_, axes_ * Vector3(x, y, 1)};
-      square.planes[i] = stage_.meet_planes(square.lines[i], model_.near, model_.far);
+      square.planes[i] = stage_.meet_planes(square.lines[i], model_.far);
     }
   }
 
@@ -115,7 +121,7 @@ class Painter {
     alignas(64) RTCRayHit16 query = {};
     const Vector3 start = eye_ - stage_.origin;
     for_each(square, [&](int i) {
-      set_ray(query.ray, i, start, square.lines[i].direction, model_.near, square.planes[i].t);
+      set_ray(query.ray, i, start, square.lines[i].direction, 0, square.planes[i].t);
       query.hit.geomID[i] = query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
     });
     RTCIntersectContext context;
@@ -128,7 +134,8 @@ class Painter {
       hit.primID = query.hit.primID[i];
       hit.instID[0] = query.hit.instID[0][i];
       if (hit.geomID != RTC_INVALID_GEOMETRY_ID)
-        square.seen[i] = stage_.sighting(square.lines[i], model_.near, hit, query.ray.tfar[i], footprint_);
+        square.seen[i] = stage_.is_of(housing_, hit) ? stage_.look(square.lines[i], model_.far, housing_, footprint_)
+                                                     : stage_.sighting(square.lines[i], 0, hit, query.ray.tfar[i], footprint_);
       else if (square.planes[i].plane >= 0)
         square.seen[i] = stage_.plane_sighting(square.lines[i], square.planes[i], footprint_);
     });
@@ -137,11 +144,19 @@ class Painter {
   void write_depth(const Square& square) const {
     for_each(square, [&](int i) {
       const Sighting& seen = square.seen[i];
-      true_depth_[square.pixels[i]] = seen ? static_cast<float>(seen.t) : std::numeric_limits<float>::quiet_NaN();
+      const bool has_depth = seen && (measures_ || seen.t >= model_.near);
+      true_depth_[square.pixels[i]] = has_depth ? static_cast<float>(seen.t) : std::numeric_limits<float>::quiet_NaN();
       if (!measures_ || !seen) return;
       const Vector3& direction = square.lines[i].direction;
       cosine_[square.pixels[i]] = static_cast<float>(std::abs(direction.dot(seen.normal)) / direction.norm());
     });
+  }
+
+  /// A place just in front of what is seen.
+  static Vector3 before(const Square& square, int i) {
+    const Sighting& seen = square.seen[i];
+    const Vector3 outwards = seen.normal.dot(square.lines[i].direction) < 0 ? seen.normal : Vector3(-seen.normal);
+    return square.lines[i].at(seen.t) + (least_gap + gap_of_depth * seen.t) * outwards;
   }
 
   /// Where something is between a surface and a place, `aim(i)` further on than where a pixel's line ends. `wanted`: -1 for those
@@ -151,9 +166,7 @@ class Painter {
     alignas(64) RTCRay16 query = {};
     for (int i = 0; i < rays; ++i) {
       if (!wanted[i]) continue;
-      const Sighting& seen = square.seen[i];
-      const Vector3 outwards = seen.normal.dot(square.lines[i].direction) < 0 ? seen.normal : Vector3(-seen.normal);
-      const Vector3 start = square.lines[i].at(seen.t) + (least_gap + gap_of_depth * seen.t) * outwards;
+      const Vector3 start = before(square, i);
       set_ray(query, i, start - stage_.origin, aim(start), 0, highest);
     }
     RTCIntersectContext context;
@@ -165,13 +178,12 @@ class Painter {
 
   /// The second imager, or the projector, sees nothing of what something else is in front of, or that faces away from it.
   void note_shadows_of_projector(const Square& square) const {
-    const Vector3 projector = eye_ + sensor_.baseline * axes_.col(0);
     alignas(64) int wanted[rays] = {};
     for_each(square, [&](int i) {
       const Sighting& seen = square.seen[i];
       if (!seen) return;
       const Vector3& direction = square.lines[i].direction;
-      const double towards = (projector - square.lines[i].at(seen.t)).dot(seen.normal) * -direction.dot(seen.normal);
+      const double towards = (second_eye_ - square.lines[i].at(seen.t)).dot(seen.normal) * -direction.dot(seen.normal);
       if (towards > 0)
         wanted[i] = -1;
       else
@@ -179,9 +191,11 @@ class Painter {
     });
     bool hidden[rays];
     find_hidden(
-        square, wanted, [&](const Vector3& start) -> Vector3 { return projector - start; }, 1, hidden);
+        square, wanted, [&](const Vector3& start) -> Vector3 { return second_eye_ - start; }, 1, hidden);
     for_each(square, [&](int i) {
-      if (hidden[i]) cosine_[square.pixels[i]] = -1;
+      if (!hidden[i]) return;
+      const Vector3 start = before(square, i);
+      if (housing_.empty() || stage_.is_blocked({start, second_eye_ - start}, 1, housing_)) cosine_[square.pixels[i]] = -1;
     });
   }
 
@@ -230,6 +244,8 @@ class Painter {
   const CameraModel& model_;
   Eigen::Matrix3d axes_;  ///< of the optical frame in the fixed one
   Vector3 eye_;
+  Vector3 second_eye_;                      ///< [m] the second imager, or the projector
+  Stage::Implementation::Housing housing_;  ///< what they are in
   const SensorModel& sensor_;
   const NoiseSeed& noise_;
   const ImageBuffers& images_;
@@ -252,7 +268,7 @@ double radius_at(const Tube& tube, std::size_t node) {
 
 void render(const Stage& stage, const Lens& lens, const Pose& pose, const SensorModel& sensor, const NoiseSeed& noise,
             const ImageBuffers& images) {
-  throw_errors(validate(sensor));
+  throw_errors(validate(sensor, lens.model().near, lens.model().far));
   if (!verlet_cable::is_sound(pose))
     throw std::invalid_argument("pose: not a pose; allowed: finite numbers, and a unit quaternion");
   Painter(stage, lens, pose, sensor, noise, images).paint();
@@ -262,6 +278,7 @@ std::vector<CableTruth> find_truth(const Stage& stage, const CameraModel& model,
   constexpr double reach = 2;  // of the radius, from a node to where the cable is met
   const Stage::Implementation& inside = stage.implementation();
   const Quaternion to_camera = pose.orientation.conjugate();
+  const Stage::Implementation::Housing housing = inside.around(pose.position);
   std::vector<CableTruth> all;
   for (std::size_t thing = 0; thing < inside.drawing.things.size(); ++thing) {
     const Thing& cable = inside.drawing.things[thing];
@@ -279,7 +296,7 @@ std::vector<CableTruth> find_truth(const Stage& stage, const CameraModel& model,
         bool is_visible = is_in_image && place.z() >= model.near && place.z() <= model.far;
         if (is_visible) {
           const Ray ray{pose.position, (tube.centers[node] - pose.position) / place.z()};
-          const Sighting seen = inside.look(ray, model.near, model.far);
+          const Sighting seen = inside.look(ray, model.far, housing, 0);
           is_visible = seen.thing == static_cast<int>(thing) &&
                        (ray.at(seen.t) - tube.centers[node]).norm() <= reach * radius_at(tube, node);
         }

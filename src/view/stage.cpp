@@ -353,13 +353,13 @@ void Stage::Implementation::add_meshes(const Implementation* before) {
   }
 }
 
-Stage::Implementation::PlaneMeeting Stage::Implementation::meet_planes(const Ray& ray, double lowest, double highest) const {
+Stage::Implementation::PlaneMeeting Stage::Implementation::meet_planes(const Ray& ray, double highest) const {
   PlaneMeeting nearest{-1, highest};
   for (std::size_t i = 0; i < planes.size(); ++i) {
-    const double slope = planes[i].axes.col(2).dot(ray.direction);
-    const double t = planes[i].axes.col(2).dot(planes[i].pose.position - ray.origin) / slope;
+    const Vector3 normal = planes[i].axes.col(2);
+    const double slope = normal.dot(ray.direction), height = normal.dot(ray.origin - planes[i].pose.position);
     // From their outside only.
-    if (slope < 0 && t >= lowest && t < nearest.t) nearest = {static_cast<int>(i), t};
+    if (slope < 0 && height >= 0 && height < -slope * nearest.t) nearest = {static_cast<int>(i), -height / slope};
   }
   return nearest;
 }
@@ -368,56 +368,80 @@ Sighting Stage::Implementation::plane_sighting(const Ray& ray, const PlaneMeetin
   return part_sighting(planes[meeting.plane], ray, {meeting.t, Vector3::UnitZ()}, footprint);
 }
 
-const PlacedPart& Stage::Implementation::part_hit(const RTCHit& hit) const {
+const PlacedPart* Stage::Implementation::part_hit(const RTCHit& hit) const {
+  if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) return &meshes[hit.instID[0] - first_mesh_id];
   switch (hit.geomID) {
+    case tubes_id:
+      return nullptr;
     case boxes_id:
-      return boxes[hit.primID / triangles_of_box];
+      return &boxes[hit.primID / triangles_of_box];
     case spheres_id:
-      return spheres[hit.primID];
+      return &spheres[hit.primID];
     case capsules_id:
-      return capsules[hit.primID];
+      return &capsules[hit.primID];
     default:
-      return solids[hit.primID];
+      return &solids[hit.primID];
   }
 }
 
 Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const {
-  if (hit.geomID == tubes_id && hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
-    return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
-  if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID) {
-    const PlacedPart& part = part_hit(hit);
-    const auto meeting = meet(part.shape, part.inside(ray), lowest);
-    return part_sighting(part, ray, meeting.value_or(Meeting{t, -ray.direction.normalized()}), footprint);
-  }
-  const PlacedPart& part = meshes[hit.instID[0] - first_mesh_id];
-  const auto [a, b, c] = corners(part, hit.primID);
-  Meeting meeting = meet_plane_of(a, b, c, ray).value_or(Meeting{t, -ray.direction.normalized()});
-  meeting.normal = part.axes.transpose() * meeting.normal;
-  return part_sighting(part, ray, meeting, footprint);
+  const PlacedPart* const part = part_hit(hit);
+  if (!part) return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
+  const Meeting otherwise{t, -ray.direction.normalized()};
+  if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
+    return part_sighting(*part, ray, meet(part->shape, part->inside(ray), lowest).value_or(otherwise), footprint);
+  const auto [a, b, c] = corners(*part, hit.primID);
+  Meeting meeting = meet_plane_of(a, b, c, ray).value_or(otherwise);
+  meeting.normal = part->axes.transpose() * meeting.normal;
+  return part_sighting(*part, ray, meeting, footprint);
 }
 
-Sighting Stage::Implementation::look(const Ray& ray, double lowest, double highest) const {
-  const PlaneMeeting plane = meet_planes(ray, lowest, highest);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRayHit query;
+Stage::Implementation::Housing Stage::Implementation::around(const Vector3& point) const {
+  constexpr double reach = 1e-6;  // [m]
+  Housing found;
+  for (const auto* group : {&boxes, &spheres, &capsules, &solids, &meshes})
+    for (const PlacedPart& part : *group)
+      if (closest_point(part.shape, part.inside(point), reach).distance < reach) found.push_back(&part);
+  return found;
+}
+
+RTCRayHit Stage::Implementation::cast(const Ray& ray, double& lowest, double highest, const Housing& housing) const {
+  constexpr double onwards = 1e-6;  // of t, and [1]: by so much a surface is left that a ray passes through
   const Eigen::Vector3f start = (ray.origin - origin).cast<float>(), direction = ray.direction.cast<float>();
-  query.ray = {start.x(),
-               start.y(),
-               start.z(),
-               static_cast<float>(lowest),
-               direction.x(),
-               direction.y(),
-               direction.z(),
-               0,
-               static_cast<float>(plane.t),
-               0xffffffff,
-               0,
-               0};
-  query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  rtcIntersect1(scene, &context, &query);
-  if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) return sighting(ray, lowest, query.hit, query.ray.tfar, 0);
-  return plane.plane >= 0 ? plane_sighting(ray, plane, 0) : Sighting{};
+  for (;;) {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    RTCRayHit query;
+    query.ray = {start.x(),
+                 start.y(),
+                 start.z(),
+                 static_cast<float>(lowest),
+                 direction.x(),
+                 direction.y(),
+                 direction.z(),
+                 0,
+                 static_cast<float>(highest),
+                 0xffffffff,
+                 0,
+                 0};
+    query.hit.geomID = query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    rtcIntersect1(scene, &context, &query);
+    if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID || !is_of(housing, query.hit)) return query;
+    lowest = query.ray.tfar * (1 + onwards) + onwards;
+  }
+}
+
+bool Stage::Implementation::is_blocked(const Ray& ray, double highest, const Housing& housing) const {
+  double lowest = 0;
+  return cast(ray, lowest, highest, housing).hit.geomID != RTC_INVALID_GEOMETRY_ID;
+}
+
+Sighting Stage::Implementation::look(const Ray& ray, double highest, const Housing& housing, double footprint) const {
+  const PlaneMeeting plane = meet_planes(ray, highest);
+  double lowest = 0;
+  const RTCRayHit found = cast(ray, lowest, plane.t, housing);
+  if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID) return sighting(ray, lowest, found.hit, found.ray.tfar, footprint);
+  return plane.plane >= 0 ? plane_sighting(ray, plane, footprint) : Sighting{};
 }
 
 Stage::Stage(Drawing drawing, const Stage* before) {

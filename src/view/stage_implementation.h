@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <deque>
 #include <map>
 #include <memory>
@@ -101,22 +102,36 @@ struct Stage::Implementation {
   /// By which Embree names what it has hit: the geometry's id.
   static constexpr unsigned tubes_id = 0, boxes_id = 1, spheres_id = 2, capsules_id = 3, solids_id = 4, first_mesh_id = 5;
 
-  /// The nearest plane that a ray meets from t = `lowest` on and before `highest`. Its index, or -1, and where.
+  /// The nearest plane that a ray meets before t = `highest`. Its index, or -1, and where.
   struct PlaneMeeting {
     int plane = -1;
     double t;
   };
-  PlaneMeeting meet_planes(const Ray& ray, double lowest, double highest) const;
+  PlaneMeeting meet_planes(const Ray& ray, double highest) const;
   /// What a ray meets there.
   Sighting plane_sighting(const Ray& ray, const PlaneMeeting& meeting, double footprint) const;
   /// What a ray meets where Embree has hit something at about `t`, in double precision. `lowest`: as of the ray; `footprint` [1]:
   /// the size of a pixel at t = 1, by which patterns are blurred; 0 where colors are not asked for.
   Sighting sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const;
-  /// What one ray meets first, from t = `lowest` to `highest`.
-  Sighting look(const Ray& ray, double lowest, double highest) const;
+
+  /// Parts, but for planes, that rays pass through.
+  using Housing = std::vector<const PlacedPart*>;
+  /// Those that a point is in, or on.
+  Housing around(const Vector3& point) const;
+  /// Whether it is one of them that Embree has hit.
+  bool is_of(const Housing& housing, const RTCHit& hit) const {
+    return !housing.empty() && std::find(housing.begin(), housing.end(), part_hit(hit)) != housing.end();
+  }
+  /// Whether a ray meets anything but planes before t = `highest`.
+  bool is_blocked(const Ray& ray, double highest, const Housing& housing) const;
+  /// What one ray meets first, before t = `highest`.
+  Sighting look(const Ray& ray, double highest, const Housing& housing, double footprint) const;
 
  private:
-  const PlacedPart& part_hit(const RTCHit& hit) const;
+  /// Null for tubes.
+  const PlacedPart* part_hit(const RTCHit& hit) const;
+  /// Where a ray meets something else than planes, from t = `lowest` on; that is raised past what rays pass through.
+  RTCRayHit cast(const Ray& ray, double& lowest, double highest, const Housing& housing) const;
   std::vector<PlacedPart>& group_of(const Shape& shape);
   void place(const Thing& thing, int index);
   void place(const Tube& tube, const Paint& paint, int index);

@@ -113,6 +113,39 @@ TEST(Tuning, EveryErrorIsToldAtOnce) {
   }
 }
 
+std::vector<std::string> tuning_errors(const SceneDesc& scene, const std::vector<NumberChange>& changes) {
+  try {
+    tuned_scene(scene, tunable_numbers(scene), changes, {});
+  } catch (const SceneError& error) {
+    return error.errors();
+  }
+  return {};
+}
+
+TEST(Tuning, WhatIsInfiniteStaysSo) {
+  SceneDesc scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "rope";
+  const std::vector<std::string> errors = tuning_errors(scene, {{"rope_yield_curvature", 5}});
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].find("tuning.rope_yield_curvature: 5; allowed: .inf, which it is in the scene"), 0u) << errors[0];
+}
+
+/// What was asked for is named, and not only what it contradicts.
+TEST(Tuning, ConflictsNameWhatWasTuned) {
+  SceneDesc scene;
+  scene.materials.resize(1);
+  scene.materials[0].name = "rope";
+  scene.materials[0].material.bending_stiffness = {0.1, 0.1};
+  scene.materials[0].material.yield_curvature = 3;
+  EXPECT_TRUE(tuning_errors(scene, {{"rope_bending_stiffness", 0.2}}).empty());
+  const std::vector<std::string> errors = tuning_errors(scene, {{"rope_bending_stiffness", 0}});
+  ASSERT_EQ(errors.size(), 1u);
+  EXPECT_EQ(errors[0].find("tuning.rope_bending_stiffness: 0; does not go with materials.rope.yield_curvature: 3; allowed: .inf"),
+            0u)
+      << errors[0];
+}
+
 TEST(Tuning, OfMillionsOfUnknownParametersAHundredAreNamed) {
   SceneDesc scene;
   try {

@@ -24,6 +24,8 @@ def test_a_scene_that_cannot_start_is_named_and_left_out(hang):
         Batch(scenes, motion)
     batch = Batch(scenes, motion, keep_going=True, threads=2)
     assert [bool(error) for error in batch.errors] == [False, True, False, True, False] and 'cables[0].length: 0.3 m' in batch.errors[1]
+    for one in (batch, pickle.loads(pickle.dumps(batch)), batch.copy()):
+        assert one.status.tolist() == [0, 6, 0, 6, 0]
     batch.step(20, record_every=10)
     assert batch.status.tolist() == [0, 6, 0, 6, 0]
     assert batch.positions('hose').shape == (5, 2, 21, 3)
@@ -33,7 +35,7 @@ def test_a_scene_that_cannot_start_is_named_and_left_out(hang):
         assert batch.state_hash[i] == world.state_hash
     assert batch.time.tolist() == pytest.approx([0.1, 0, 0.1, 0, 0.1])
     again = pickle.loads(pickle.dumps(batch))
-    assert again.errors == batch.errors
+    assert again.errors == batch.errors and (again.status == batch.status).all()
     for one in (batch, again):
         one.set_world(1, World(scenes[0], motion))
         assert one.errors[1] == '' and one.errors[3]

@@ -74,7 +74,7 @@ def test_every_method_of_world_is_there_for_one_of_a_batch(scene):
         assert re.match(rf'{name}\(self: \S+, world: int', getattr(Batch, name).__doc__), name
         assert f'As World.{name}, of one of the worlds' in getattr(Batch, name).__doc__
     own = {name for name, _ in inspect.getmembers(World) if not name.startswith('_')}
-    assert own - set(dir(Batch)) == {'load', 'scene', 'draw', 'cable_names', 'net_names', 'particle_names', 'body_names', 'guide_names',
+    assert own - set(dir(Batch)) == {'load', 'scene', 'cable_names', 'net_names', 'particle_names', 'body_names', 'guide_names',
                                      'attachment_names', 'obstacle_names', 'frame_names'}
 
 

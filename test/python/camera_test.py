@@ -59,6 +59,28 @@ def test_truth_is_where_nodes_are(table, front):
     assert front.look_at([0, 0, 1.5], [0, 0, 0], [0, 1, 0]).render(world, ['truth'])['truth']['hose']['visible'].all()
 
 
+def test_what_is_nearer_than_near_hides(table, front):
+    table['obstacles'].append({'name': 'finger', 'type': 'box', 'size': [0.2, 0.01, 0.2], 'pose': [-0.1, -1.45, 0.3, 0, 0, 0]})
+    world = World(Scene.from_dict(table))
+    images = front.render(world)
+    mask = images['mask']
+    assert (mask[:, :79] == 5).all() and not (mask[:, 80:] == 5).any()
+    assert np.isnan(images['depth'][mask == 5]).all() and np.isnan(images['points'][mask == 5]).all()
+    assert not images['truth']['hose']['visible'][:10].any()
+    near = Camera(160, 120, 0.9, near=0.01).look_at([0, -1.5, 0.3], [0, 0, 0.3]).render(world)
+    assert np.nanmax(near['depth'][mask == 5]) < 0.1
+    assert np.array_equal(near['mask'], mask) and np.array_equal(near['rgb'], images['rgb'])
+
+
+def test_tables_are_seen_from_above(table):
+    """As on a map."""
+    world = World(Scene.from_dict(table))
+    truth = Camera(160, 120).look_at([0, 0, 1.5], [0, 0, 0]).render(world, ['truth'])['truth']['hose']
+    assert (np.diff(truth['u']) > 0).all() and np.allclose(truth['v'], 59.5)
+    with pytest.raises(ValueError, match=r'up: \[0, 0, 1\], along the line of sight.*such as \[0, 1, 0\] for what is seen from above'):
+        Camera().look_at([0, 0, 1.5], [0, 0, 0], [0, 0, 1])
+
+
 def test_same_state_and_seed_are_the_same_bytes(table):
     world = World(Scene.from_dict(table))
 
@@ -109,8 +131,12 @@ def test_nets_and_particles_are_seen(hang):
     world = World(Scene.from_dict(hang))
     low, high = world.positions('net').min(axis=0), world.positions('net').max(axis=0)
     middle = (low + high) / 2
-    mask = Camera(200, 200, 1.6).look_at(middle + [0.2, -0.8, 0.4], middle).render(world, ['mask'])['mask']
-    assert set(np.unique(mask)) == {0, 1, 2}
+    camera = Camera(200, 200, 1.6).look_at(middle + [0.2, -0.8, 0.4], middle)
+    assert set(np.unique(camera.render(world, ['mask'])['mask'])) == {0, 1, 2}
+    # As camera_node numbers them: by cable_id of the topic points, then bodies.
+    hang['bodies'] = [{'name': 'plug', 'mass': 0.1, 'shapes': [{'type': 'sphere', 'radius': 0.1}], 'pose': [5, 0, 0, 0, 0, 0]}]
+    hang['obstacles'] = [{'name': 'floor', 'type': 'plane', 'pose': [0, 0, -5, 0, 0, 0]}]
+    assert camera.labels(World(Scene.from_dict(hang))) == ['net', 'ball', 'plug', 'floor']
 
 
 def test_presets_name_their_sources():
@@ -149,8 +175,13 @@ def test_threads_may_share_a_camera(table, front):
 @pytest.mark.parametrize('arguments, lines', [
     ({'width': 0, 'height': 0, 'horizontal_fov': np.pi, 'near': 2, 'far': 1},
      ['width: 0; allowed: an integer', 'height: 0; allowed: ', 'far: 1; allowed: any number above near, 2', 'horizontal_fov: 3.14']),
-    ({'width': 10**12}, ['width: 1073741824; allowed: an integer']),
+    ({'width': 10**12}, ['width: 1000000000000; allowed: an integer [pixels] (from 1 to 16384)']),
+    ({'width': -5}, ['width: -5; allowed: an integer [pixels] (from 1 to 16384)']),
     ({'width': 3.5}, ['width: 3.5; allowed: an integer']),
+    ({'width': 0, 'noise': {'axial': 3}}, ['width: 0; allowed: ', 'noise.axial: 3; allowed: three numbers']),
+    ({'width': 1.5, 'near': -1, 'noise': {'edge_step': 0, 'axail': 1}, 'preset': 'x', 'seed': -1, 'threads': None},
+     ["preset: 'x'; ", 'width: 1.5; ', 'noise.axail: no such key', 'seed: -1; ', 'threads: None; ', 'near: -1; ', 'noise.edge_step: 0; ']),
+    ({'noise': {'axial': [-1, 0, 0]}}, ['noise.axial: [-1, 0, 0]; allowed: a, b, c with a + b z + c z^2 of 0 or more']),
     ({'horizontal_fov': '1'}, ["horizontal_fov: '1'; allowed: a number"]),
     ({'distortion': [1, 2]}, ['distortion: [1, 2]; allowed: five numbers k1']),
     ({'noise': {'axial': [1, 2], 'dropout_angle': 'steep'}}, ['noise.axial: [1, 2]; allowed: three', "noise.dropout_angle: 'steep'"]),

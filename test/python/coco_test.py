@@ -51,9 +51,8 @@ def check_format(path):
         pixels = decoded(entry['segmentation'])
         assert pixels.shape == (shown['height'], shown['width']) and pixels.sum() == entry['area']
         x, y, width, height = entry['bbox']
-        if entry['area']:
-            assert pixels[y:y + height, x:x + width].sum() == entry['area']
-            assert pixels[y].any() and pixels[y + height - 1].any() and pixels[:, x].any() and pixels[:, x + width - 1].any()
+        assert entry['area'] > 0 and pixels[y:y + height, x:x + width].sum() == entry['area']
+        assert pixels[y].any() and pixels[y + height - 1].any() and pixels[:, x].any() and pixels[:, x + width - 1].any()
         assert all(1 <= a < b <= len(category['keypoints']) for a, b in category['skeleton'])
     return content
 
@@ -71,10 +70,11 @@ def test_what_is_written_is_what_is_seen(crossed, tmp_path):
         assert np.array_equal(np.asarray(file), seen['mask'])
     with image.open(tmp_path / 'set/depth/00000001.png') as file:
         np.testing.assert_allclose(np.asarray(file) / 1000, np.nan_to_num(seen['depth']), atol=0.00051)
-    under, over, away = content['annotations']
+    # Of what is not in the image there is no annotation.
+    under, over = content['annotations']
+    assert content['images'][0]['labels'] == ['under', 'over', 'away', 'floor']
     assert np.array_equal(decoded(under['segmentation']), seen['mask'] == 1)
-    assert [under['cable'], over['cable'], away['cable']] == ['under', 'over', 'away']
-    assert away['area'] == 0 and away['num_keypoints'] == 0
+    assert [under['cable'], over['cable']] == ['under', 'over'] and [under['mask'], over['mask']] == [1, 2]
     keypoints = np.reshape(over['keypoints'], (5, 3))
     np.testing.assert_allclose(keypoints[:, 0], seen['truth']['over']['u'][::5], atol=1e-3)
     np.testing.assert_allclose(over['positions'], seen['truth']['over']['positions'][::5], atol=1e-6)
@@ -124,3 +124,15 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
         with pytest.raises(ValueError) as caught:
             dataset.add(Camera(8, 8), World(crossed), **arguments)
         assert str(caught.value).startswith(text)
+
+
+def test_nothing_is_added_to_what_is_closed(crossed, tmp_path):
+    camera, world = Camera(8, 8), World(crossed)
+    with coco.Dataset(tmp_path / 'set') as dataset:
+        dataset.add(camera, world)
+    before = (tmp_path / 'set/annotations.json').read_bytes()
+    with pytest.raises(ValueError, match=r'add: .*set is closed.*; allowed: add\(\) before close\(\).* or a new Dataset'):
+        dataset.add(camera, world)
+    assert len(list((tmp_path / 'set/images').iterdir())) == len(dataset) == 1
+    dataset.close()
+    assert (tmp_path / 'set/annotations.json').read_bytes() == before

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from verlet_cable.sim import Scene, World
+from verlet_cable.sim import Batch, Scene, World
 
 image = pytest.importorskip('matplotlib.image')
 
@@ -47,6 +47,18 @@ def test_a_picture_is_written_or_returned(hang, tmp_path):
     assert pixels(world.draw(size=(321, 200))).shape == (200, 321, 3)
     world.step()
     assert world.draw(view=(0, 0)) != world.draw(view=(0, 90))
+
+
+def test_a_batch_draws_its_worlds(hang, tmp_path):
+    batch = Batch(Scene.from_dict(hang), 2)
+    batch.tune(1, gravity=[0, 5, -5])
+    batch.step(20)
+    for index in (0, 1, -1):
+        assert batch.draw(index, view=(0, 0), size=(200, 150)) == batch.world(index).draw(view=(0, 0), size=(200, 150))
+    assert batch.draw(0, view=(0, 0)) != batch.draw(1, view=(0, 0))
+    assert batch.draw(1, tmp_path / 'a.png') is None and (tmp_path / 'a.png').read_bytes() == batch.draw(1)
+    with pytest.raises(IndexError):
+        batch.draw(2)
 
 
 def test_what_is_in_front_hides_what_is_behind(wall):

@@ -62,6 +62,17 @@ def test_the_example_in_the_help_runs_well(write):
     assert done.returncode == 0, done.stdout
 
 
+@pytest.mark.parametrize('module, shown', [('__init__', "depth.shape, mask.max(), visible.all()"), ('coco', 'len(dataset), world.time')])
+def test_the_examples_in_the_help_of_the_camera_run_well(write, module, shown):
+    pytest.importorskip('verlet_cable.camera')
+    pytest.importorskip('PIL')
+    help_text = ast.get_docstring(ast.parse((PACKAGE / f'src/python/verlet_cable/camera/{module}.py').read_text()))
+    example = re.search(r'(?:(?:    .*)?\n)+', help_text.partition('\n')[2])[0]
+    expected = {'__init__': '(480, 640) 1 True', 'coco': '10 0.1'}[module]
+    done = run_page(write(python(textwrap.dedent(example) + f'print({shown})'), text(expected, ' tolerance=1e-9')))
+    assert done.returncode == 0, done.stdout
+
+
 def test_all_pages_are_in_the_index():
     index = (PACKAGE / 'doc/python/README.md').read_text()
     assert len(PYTHON_PAGES) >= 4 and all(f'({page.name})' in index for page in PYTHON_PAGES)

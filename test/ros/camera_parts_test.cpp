@@ -78,6 +78,8 @@ TEST(CameraSettings, AllErrorsAtOnce) {
   EXPECT_EQ(errors_of("{distortion: [3, 0, 0, 0, 0]}").size(), 0u);
   EXPECT_EQ(errors_of("{distortion: [-30, 0, 0, 0, 0]}").size(), 1u);
   EXPECT_EQ(errors_of("{robot_description: no_such}").size(), 1u);
+  EXPECT_EQ(errors_of("{near: 1, noise: {axial: [-1, 0.9, 0]}}").size(), 1u);
+  EXPECT_EQ(errors_of("{near: 1.2, noise: {axial: [-1, 0.9, 0]}}").size(), 0u);
   EXPECT_EQ(errors_of("{}").size(), 0u);
 }
 
@@ -111,6 +113,17 @@ TEST(CameraInfo, WhatCannotBeUsedIsNamed) {
               info.D = {0.1, 0, 0, 0};
             }).substr(0, 17),
             "distortion_model:");
+  // All at once.
+  const std::string all = problem_with([](auto& info) {
+    info.distortion_model = "equidistant";
+    info.D = {0.1, 0, 0, 0};
+    info.binning_y = 4;
+    info.K[0] = std::numeric_limits<double>::quiet_NaN();
+    info.height = 0;
+  });
+  for (const char* part :
+       {"distortion_model: \"equidistant\"; allowed: ", "; binning_x, binning_y: 4; ", "; fx: nan; ", "; height: 0; "})
+    EXPECT_NE(all.find(part), std::string::npos) << part << " in " << all;
 }
 
 TEST(Pixels, DepthInMillimetres) {
@@ -158,8 +171,29 @@ TEST(MomentDrawing, NumbersOfThings) {
   EXPECT_TRUE(drawing.things[0].tubes.empty());
   EXPECT_EQ(drawing.things[1].tubes.size(), 1u);
   EXPECT_EQ(drawing.things[4].parts.size(), 1u);
+  for (const int i : {0, 1}) EXPECT_EQ(drawing.things[i].kind, view::Thing::Kind::cable);
   // Of a bag without appearances.
   EXPECT_EQ(view::labels(drawing_of({state, nullptr}, {}, {}, {}, meshes)), std::vector<std::string>{"second"});
+}
+
+/// 1 + `cable_id` of the topic `points`: cables, then nets, then particles, and after them bodies. They are told apart as in a
+/// world.
+TEST(MomentDrawing, NetsAndParticlesAreNumberedWithCables) {
+  const auto state = boost::make_shared<CableArray>();
+  state->cables.emplace_back().name = "rope";
+  state->cables.back().radius = 0.01;
+  state->cables.back().positions.resize(2);
+  state->cables.back().positions[1].x = 1;
+  state->nets.emplace_back().name = "net";
+  state->particles.emplace_back().name = "ball";
+  state->bodies.emplace_back().name = "plug";
+  MeshShelf meshes;
+  const view::Drawing drawing = drawing_of({state, nullptr}, {}, {}, {}, meshes);
+  EXPECT_EQ(view::labels(drawing), (std::vector<std::string>{"rope", "net", "ball", "plug"}));
+  using Kind = view::Thing::Kind;
+  const Kind kinds[] = {Kind::cable, Kind::net, Kind::particle, Kind::body};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(drawing.things[i].kind, kinds[i]) << i;
+  EXPECT_TRUE(view::validate(drawing).empty());
 }
 
 }  // namespace

@@ -228,6 +228,9 @@ class CameraTest(unittest.TestCase):
             driver.publish(CameraInfo(width=64, height=0, K=info.K))
             refused = log.wait_for(lambda line: line.name == '/driven_camera' and 'height' in line.msg, 'refusal', 10)
             self.assertIn('allowed', refused.msg)
+            # Another reason is told at once.
+            driver.publish(CameraInfo(width=64, height=48, distortion_model='equidistant', D=[0.1] * 4, K=info.K))
+            log.wait_for(lambda line: line.name == '/driven_camera' and 'distortion_model: "equidistant"' in line.msg, 'reason', 3)
             images.next()  # it goes on with what it had
 
     def test_a_state_without_appearance_is_seen(self):
@@ -264,6 +267,11 @@ class CameraTest(unittest.TestCase):
             line = log.wait_for(lambda line: line.name == '/lost_camera' and 'no_such_frame' in line.msg, 'warning', 10)
             self.assertEqual(line.level, Log.WARN)
             self.assertEqual(images.all(), [])
+
+    def test_a_state_that_nobody_publishes_is_named(self):
+        with Messages('/rosout', Log) as log, Messages('/silent_camera/truth', CableView):
+            line = log.wait_for(lambda line: line.name == '/silent_camera' and 'nobody publishes /nobody/state' in line.msg, 'warning', 10)
+            self.assertEqual(line.level, Log.WARN)
 
     def test_a_lost_link_is_named_and_the_rest_is_seen(self):
         with Messages('/rosout', Log) as log, Messages('/camera/mask/image_raw', Image) as images:

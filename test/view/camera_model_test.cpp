@@ -99,8 +99,25 @@ TEST(CameraModel, LooksAtItsTarget) {
   EXPECT_NEAR(up.x(), 0, 1e-12);
   EXPECT_LT(up.y(), 0);  // in the image, y is down
   EXPECT_THROW(look_at(eye, eye), std::invalid_argument);
-  EXPECT_THROW(look_at(eye, eye + Vector3(0, 0, 1)), std::invalid_argument);
   EXPECT_THROW(look_at(eye, {NAN, 0, 0}), std::invalid_argument);
+}
+
+/// From straight above the image is as a map: x to the right, y upwards.
+TEST(CameraModel, LooksStraightDown) {
+  const Vector3 eye(1, 2, 3);
+  const Pose down = look_at(eye, eye - Vector3(0, 0, 2));
+  EXPECT_LT((down.orientation * Vector3::UnitX() - Vector3::UnitX()).norm(), 1e-12);
+  EXPECT_LT((down.orientation * Vector3::UnitY() + Vector3::UnitY()).norm(), 1e-12);
+  const Pose up = look_at(eye, eye + Vector3(0, 0, 2));
+  EXPECT_LT((up.orientation * Vector3::UnitY() + Vector3::UnitY()).norm(), 1e-12);
+  try {
+    look_at(eye, eye - Vector3(0, 0, 2), Vector3::UnitZ());
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_STREQ(error.what(),
+                 "up: [0, 0, 1], along the line of sight, or without length; allowed: any other direction, such as [0, 1, 0] for "
+                 "what is seen from above");
+  }
 }
 
 }  // namespace

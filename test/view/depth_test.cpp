@@ -100,16 +100,80 @@ TEST(Depth, PointsLieOnLinesOfSight) {
     }
 }
 
+/// Beyond `far` nothing is seen; what is nearer than `near` is seen, without depth.
 TEST(Depth, IsThereFromNearToFar) {
   const Drawing drawing = drawing_with(thing_of("floor", PlaneShape{}));
   CameraModel model = model_of(32, 24);
   const Pose down = look_at({0, 0, 1}, {0, 0, 0}, Vector3::UnitY());
-  for (const auto& [near, far, is_seen] : {std::tuple{0.5, 2.0, true}, {0.5, 0.9, false}, {1.1, 2.0, false}}) {
+  for (const auto& [near, far, has_depth, is_seen] :
+       {std::tuple{0.5, 2.0, true, true}, {0.5, 0.9, false, false}, {1.1, 2.0, false, true}}) {
     model.near = near;
     model.far = far;
     const Picture picture = picture_of(Stage(drawing), model, down);
-    EXPECT_EQ(!std::isnan(picture.depth_at(10, 10)), is_seen);
+    EXPECT_EQ(!std::isnan(picture.depth_at(10, 10)), has_depth);
+    EXPECT_EQ(!std::isnan(picture.points[3 * (10 * model.width + 10)]), has_depth);
     EXPECT_EQ(picture.mask_at(10, 10), is_seen ? 1 : 0);
+  }
+}
+
+/// A plate before the right half of the image, 4 cm from the lens, and a wall behind.
+Drawing wall_behind_plate() {
+  Drawing drawing = drawing_with(cable("cable", {{{-0.3, 0, 1}, {-0.1, 0, 1}, {0.1, 0, 1}, {0.3, 0, 1}}, {0.01}, {}}, {0, 0, 0}));
+  drawing.things.push_back(thing_of("plate", BoxShape{{0.1, 0.2, 0.01}}, {{0.05, 0, 0.045}, Quaternion::Identity()}));
+  drawing.things.push_back(thing_of("wall", PlaneShape{}, {{0, 0, 2}, quaternion_from_rpy({M_PI, 0, 0})}));
+  return drawing;
+}
+
+TEST(Depth, WhatIsNearerThanNearHidesWhatIsBehind) {
+  const Stage stage(wall_behind_plate());
+  CameraModel model = model_of(64, 48);
+  model.near = 0.01;
+  const Picture all = picture_of(stage, model, {});
+  model.near = 0.1;
+  SensorModel noisy;
+  noisy.axial = {0.01, 0, 0};
+  noisy.edge_dropout = 1;
+  for (const SensorModel& sensor : {SensorModel{}, noisy}) {
+    const Picture picture = picture_of(stage, model, {}, sensor);
+    EXPECT_EQ(picture.mask, all.mask);
+    EXPECT_EQ(picture.rgb, all.rgb);
+    for (int row = 0; row < model.height; ++row)
+      for (int column = 0; column < model.width; ++column) {
+        if (picture.mask_at(column, row) == 1) continue;
+        // Beside the plate, too: that is not deeper.
+        const bool is_wall = column < model.width / 2 && (row < 20 || row > 28);
+        if (is_wall || column >= model.width / 2) {
+          EXPECT_EQ(!std::isnan(picture.depth_at(column, row)), is_wall) << column << " " << row;
+        }
+      }
+  }
+  EXPECT_NEAR(all.depth_at(50, 24), 0.04, 1e-6);
+  EXPECT_EQ(find_truth(stage, model, {})[0].visible, (std::vector<char>{1, 1, 0, 0}));
+}
+
+/// The camera is in its housing, as robots' descriptions have it: a box, or a mesh. That is not seen, and the rest hides as ever.
+TEST(Depth, HousingsAreNotSeen) {
+  SensorModel sensor;
+  sensor.baseline = 0.05;
+  const auto mesh = std::make_shared<const TriangleMesh>(
+      std::vector<Vector3>{{-0.1, -0.1, -0.1}, {0.3, -0.1, -0.1}, {-0.1, 0.3, -0.1}, {-0.1, -0.1, 0.3}},
+      std::vector<TriangleMesh::Triangle>{{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}});
+  const Drawing bare = wall_behind_plate();
+  const CameraModel model = model_of(64, 48);
+  const Picture expected = picture_of(Stage(bare), model, {}, sensor);
+  for (const Shape& shape : {Shape(BoxShape{{0.2, 0.03, 0.02}}), Shape(MeshShape{mesh})}) {
+    Drawing housed = bare;
+    housed.things.push_back(thing_of("housing", shape));
+    const Stage stage(housed);
+    const Picture picture = picture_of(stage, model, {}, sensor);
+    EXPECT_EQ(picture.mask, expected.mask);
+    for (std::size_t i = 0; i < picture.depth.size(); ++i) {
+      EXPECT_EQ(std::isnan(picture.depth[i]), std::isnan(expected.depth[i])) << i;
+      if (!std::isnan(expected.depth[i])) {
+        EXPECT_NEAR(picture.depth[i], expected.depth[i], 1e-6);
+      }
+    }
+    EXPECT_EQ(find_truth(stage, model, {})[0].visible, (std::vector<char>{1, 1, 0, 0}));
   }
 }
 

@@ -48,7 +48,7 @@ World world_of_everything() {
 TEST(Drawing, HasAllThatAWorldHas) {
   const World world = world_of_everything();
   const Drawing drawing = drawing_of(world);
-  EXPECT_EQ(labels(drawing), (std::vector<std::string>{"cable", "plug", "particle", "floor"}));
+  EXPECT_EQ(labels(drawing), (std::vector<std::string>{"cable", "particle", "plug", "floor"}));
   EXPECT_TRUE(validate(drawing).empty());
   const Thing& cable = drawing.things[0];
   EXPECT_EQ(cable.kind, Thing::Kind::cable);
@@ -59,8 +59,9 @@ TEST(Drawing, HasAllThatAWorldHas) {
   EXPECT_EQ(cable.tubes[0].radii.front(), 0.005);
   EXPECT_EQ(cable.tubes[0].radii.back(), 0.02);
   EXPECT_EQ(cable.tubes[0].orientations.size(), 10u);
-  EXPECT_EQ(drawing.things[1].kind, Thing::Kind::body);
-  EXPECT_EQ(drawing.things[1].pose.position, Vector3(0, 0, 1));
+  EXPECT_EQ(drawing.things[1].kind, Thing::Kind::particle);
+  EXPECT_EQ(drawing.things[2].kind, Thing::Kind::body);
+  EXPECT_EQ(drawing.things[2].pose.position, Vector3(0, 0, 1));
   EXPECT_EQ(drawing.things[3].look.pattern, Look::Pattern::checks);
 }
 
@@ -87,7 +88,7 @@ TEST(Drawing, ErrorsAreNamedAllAtOnce) {
   const std::vector<std::string> errors = validate(drawing);
   ASSERT_EQ(errors.size(), 6u);
   EXPECT_EQ(errors[0], "things[0].parts[0].shape: out of range; allowed: sizes above 0, and a mesh that is there");
-  EXPECT_EQ(errors[1], "things[1]: out of order; allowed: cables first, then bodies, then the others");
+  EXPECT_EQ(errors[1], "things[1]: out of order; allowed: cables, nets, particles, bodies and the others, in this order");
   EXPECT_EQ(errors[2].rfind("things[1].tubes[0]: out of range; allowed: two finite centers or more", 0), 0u);
   EXPECT_EQ(errors[3].rfind("things[2].look: out of range", 0), 0u);
   EXPECT_EQ(errors[4].rfind("things[2].parts[0].shape", 0), 0u);

@@ -145,7 +145,7 @@ TEST(Sensor, ErrorsAreNamedAllAtOnce) {
   sensor.dropout_angle = 0;
   sensor.edge_dropout = 2;
   sensor.disparity_step = 0.1;
-  const std::vector<std::string> errors = validate(sensor);
+  const std::vector<std::string> errors = validate(sensor, 0.1, 10);
   ASSERT_EQ(errors.size(), 4u);
   EXPECT_EQ(errors[0].rfind("noise.axial: [0, nan, 0]; allowed: three finite numbers a, b, c", 0), 0u) << errors[0];
   EXPECT_EQ(errors[1].rfind("noise.dropout_angle: 0; allowed: any number above 0, at most 90 [degree]", 0), 0u) << errors[1];
@@ -153,18 +153,47 @@ TEST(Sensor, ErrorsAreNamedAllAtOnce) {
   EXPECT_EQ(errors[3], "noise.disparity_step: 0.1; allowed: 0 without a baseline");
 }
 
+/// (z - 1)^2 touches 0, and 0.5 z - 1 is below 0 up to 2 m.
+TEST(Sensor, DeviationsAreNowhereBelow0) {
+  const auto errors_of = [](const std::array<double, 3>& axial, double near, double far) {
+    SensorModel sensor;
+    sensor.axial = axial;
+    return validate(sensor, near, far);
+  };
+  EXPECT_EQ(
+      errors_of({-1, 0, 0}, 0.1, 10),
+      std::vector<std::string>{"noise.axial: [-1, 0, 0]; allowed: a, b, c with a + b z + c z^2 of 0 or more at all depths z from "
+                               "near, 0.1, to far, 10 [m]"});
+  EXPECT_TRUE(errors_of({1, -2, 1}, 0.1, 10).empty());
+  EXPECT_EQ(errors_of({0.99, -2, 1}, 0.1, 10).size(), 1u);
+  EXPECT_TRUE(errors_of({0.99, -2, 1}, 0.1, 0.9).empty());
+  EXPECT_TRUE(errors_of({0.99, -2, 1}, 1.1, 10).empty());
+  EXPECT_EQ(errors_of({-1, 0.5, 0}, 1.9, 10).size(), 1u);
+  EXPECT_TRUE(errors_of({-1, 0.5, 0}, 2, 10).empty());
+  EXPECT_EQ(errors_of({0.1, 0, -0.01}, 0.1, 10).size(), 1u);
+  EXPECT_TRUE(errors_of({0.1, 0, -0.01}, 0.1, 3).empty());
+}
+
 TEST(Sensor, PresetsAreValidAndSayWhereTheirFiguresAreFrom) {
   ASSERT_FALSE(camera_presets().empty());
   for (const CameraPreset& preset : camera_presets()) {
     EXPECT_EQ(find_camera_preset(preset.name), &preset);
     EXPECT_TRUE(validate(preset.camera).empty());
-    EXPECT_TRUE(validate(preset.sensor).empty());
+    EXPECT_TRUE(validate(preset.sensor, preset.camera.near, preset.camera.far).empty());
     EXPECT_GT(preset.source.size(), 20u);
   }
   EXPECT_EQ(find_camera_preset("no such camera"), nullptr);
   // Nguyen, Izadi and Lovell: 0.0012 + 0.0019 (z - 0.4)^2
   const auto& [a, b, c] = find_camera_preset("kinect_v1")->sensor.axial;
   EXPECT_NEAR(a + b * 2 + c * 4, 0.0012 + 0.0019 * 1.6 * 1.6, 1e-12);
+  // Grunnet-Jepsen, Sweetser and Woodfill: the root mean square of the error is z^2 0.08 / (focal length x baseline), the former
+  // being 1280 / 2 / tan(65 / 2 degrees) and 848 / 2 / tan(90 / 2 degrees) pixels.
+  for (const auto& [name, focal_length, baseline] :
+       {std::tuple{"realsense_d415", 1004.6, 0.055}, {"realsense_d435", 424.0, 0.05}}) {
+    const SensorModel& sensor = find_camera_preset(name)->sensor;
+    EXPECT_NEAR(sensor.axial[2] / (0.08 / (focal_length * baseline)), 1, 1e-4);
+    EXPECT_EQ(sensor.baseline, baseline);
+  }
 }
 
 }  // namespace

@@ -9,6 +9,8 @@
 
 namespace verlet_cable::view {
 
+constexpr int most_pixels = 16384;  ///< of a side of an image: what x times y still fits into an int
+
 /// What a camera is asked for by its field of view.
 struct CameraDesc {
   int width = 640;                     ///< [pixels] 1 to 16384
@@ -27,7 +29,9 @@ struct CameraModel {
   double fx = 554.0, fy = 554.0;       ///< [pixels] focal lengths, > 0
   double cx = 319.5, cy = 239.5;       ///< [pixels] where the line of sight meets the image
   std::array<double, 5> distortion{};  ///< k1, k2, t1, t2, k3 of plumb_bob
-  double near = 0.1, far = 10;         ///< [m] depths that are seen, 0 < near < far
+  /// [m] Depths that are measured, 0 < near < far. What is nearer has no depth, and is seen and hides as all else; beyond `far`
+  /// nothing is seen.
+  double near = 0.1, far = 10;
 };
 
 /// All errors, one line each: `horizontal_fov: 3.2; allowed: ...`. Empty: `camera_model` makes one.
@@ -40,7 +44,9 @@ CameraModel camera_model(const CameraDesc& desc);
 
 /// A pose of the optical frame from which a camera at `eye` has `target` in the middle of its image, and `up` upwards in it.
 /// Throws std::invalid_argument where there is none: `target` is `eye`, or `up` is along the line of sight.
-Pose look_at(const Vector3& eye, const Vector3& target, const Vector3& up = Vector3::UnitZ());
+Pose look_at(const Vector3& eye, const Vector3& target, const Vector3& up);
+/// The same with z upwards in the image, or y where the line of sight is along z: as on a map, seen from above.
+Pose look_at(const Vector3& eye, const Vector3& target);
 
 /// Pixel of a point in the optical frame. NaN where z <= 0, or so far to the side that the lens' law turns back.
 std::array<double, 2> project(const CameraModel& model, const Vector3& point);

@@ -40,6 +40,7 @@ struct Tube {
 };
 
 /// A solid or a mesh in the frame of the thing that it is part of. Meshes are seen from both sides, planes from outside only.
+/// What the lens is in, such as the camera's housing, is not seen by it.
 struct Part {
   Pose pose;
   Shape shape;
@@ -48,7 +49,7 @@ struct Part {
 
 /// What has a number of its own in masks.
 struct Thing {
-  enum class Kind { cable, body, other };
+  enum class Kind { cable, net, particle, body, other };
   std::string name;
   Kind kind = Kind::other;
   Look look;
@@ -67,8 +68,8 @@ struct Light {
 /// All that is seen at one moment. A plain value: whoever has nodes, poses and shapes can make one; `drawing_of` makes that of a
 /// world.
 struct Drawing {
-  /// Cables in the order of their ids, then bodies, then all else. In masks `things[i]` has the number i + 1, and 0 is the
-  /// background.
+  /// In the order of their kinds, and those of a kind in the order of their ids: `things[i]` has the number i + 1 in masks, which
+  /// is 1 + `cable_id` of the node's topic `points` for cables, nets and particles; 0 is the background.
   std::vector<Thing> things;
   Light light{};
   Color background{0.86, 0.89, 0.93};

@@ -10,7 +10,7 @@ namespace verlet_cable::view {
 
 /// What a depth camera does to depth. All of it is off by default. Colors and masks are not touched.
 struct SensorModel {
-  /// Standard deviation of the depth z: a + b z + c z^2, in m, 1 and 1/m. Nowhere below 0: where the law is, there is no noise.
+  /// Standard deviation of the depth z: a + b z + c z^2, in m, 1 and 1/m. Not below 0 from the camera's `near` to its `far`.
   std::array<double, 3> axial{};
   double dropout_angle = 90;  ///< [degree] above 0 to 90: no depth where the line of sight is further from the surface's normal
   double baseline = 0;  ///< [m] place of the second imager, or of the projector, along x of the optical frame; 0: none. What that
@@ -20,8 +20,9 @@ struct SensorModel {
   double edge_step = 0.02;  ///< [m]
 };
 
-/// All errors, one line each: `noise.axial: [-1, 0, 0]; allowed: ...`.
-std::vector<std::string> validate(const SensorModel& sensor);
+/// All errors, one line each: `noise.axial: [-1, 0, 0]; allowed: ...`. `near`, `far`: [m] as in CameraModel, where they are
+/// checked.
+std::vector<std::string> validate(const SensorModel& sensor, double near, double far);
 
 /// A depth camera with the figures that are published of it.
 struct CameraPreset {

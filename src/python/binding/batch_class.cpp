@@ -176,6 +176,11 @@ py::tuple drawings(const PythonBatch& batch, const py::dict& given) {
   return py::make_tuple(capsule_of(std::move(all)), times);
 }
 
+py::object draw(const std::shared_ptr<PythonBatch>& batch, std::int64_t world, const py::object& path, const py::object& view,
+                const py::object& size) {
+  return py::cast(WorldsOfBatch{batch})[py::int_(world)].attr("draw")(path, view, size);
+}
+
 /// The method that reads a quantity.
 template <Quantity quantity>
 py::array_t<double> read(PythonBatch& batch, const py::str& name, std::optional<double> missing) {
@@ -202,16 +207,20 @@ std::shared_ptr<PythonBatch> copy(const PythonBatch& batch) {
 py::tuple pickled(const PythonBatch& batch) {
   py::list worlds;
   for (std::size_t i = 0; i < use(batch).size(); ++i) worlds.append(py::bytes(batch.batch[i].save()));
-  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds, batch.batch.errors());
+  std::vector<int> status;
+  for (const StepResult::Status one : batch.batch.status()) status.push_back(static_cast<int>(one));
+  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds, batch.batch.errors(), status);
 }
 
 std::shared_ptr<PythonBatch> unpickled(const py::tuple& parts) {
   PythonScene scene = scene_of_parts(parts[0]);
   std::vector<DrivenWorld> worlds;
   for (const py::handle& data : parts[2]) worlds.push_back(DrivenWorld::load(*scene.desc, data.cast<std::string>()));
+  std::vector<StepResult::Status> status;
+  for (const int number : parts[4].cast<std::vector<int>>()) status.push_back(static_cast<StepResult::Status>(number));
   const int threads = parts[1].cast<int>();
-  return std::make_shared<PythonBatch>(std::move(scene), threads,
-                                       Batch(std::move(worlds), parts[3].cast<std::vector<std::string>>(), threads));
+  return std::make_shared<PythonBatch>(
+      std::move(scene), threads, Batch(std::move(worlds), parts[3].cast<std::vector<std::string>>(), std::move(status), threads));
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {
@@ -260,6 +269,8 @@ BatchClass add_batch_class(py::module_& module) {
            "continues with the same bytes as the world would.")
       .def("__repr__", represent)
       .def("_drawings", drawings)
+      .def("draw", draw, py::arg("world"), py::arg("path") = py::none(), py::arg("view") = py::none(),
+           py::arg("size") = py::make_tuple(800, 600), "As World.draw, of one of the worlds.")
       .def("__len__", [](const PythonBatch& batch) { return use(batch).size(); })
       .def(
           "__getitem__",

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -28,18 +29,10 @@ using view::SensorModel;
 /// Between the seeds of worlds: so far apart that other seeds do not meet them. The first world has the camera's.
 constexpr std::uint64_t world_stride = 0x9e3779b97f4a7c15;
 
-/// One line each.
-void throw_all(const std::vector<std::string>& errors) {
-  std::string text;
-  for (const std::string& error : errors) text += (text.empty() ? "" : "\n") + error;
-  if (!errors.empty()) throw py::value_error(text);
-}
-
-CameraModel model_of(const CameraDesc& desc, const SensorModel& sensor) {
+std::vector<std::string> errors_of(const CameraDesc& desc, const SensorModel& sensor) {
   std::vector<std::string> errors = validate(desc);
-  for (const std::string& error : validate(sensor)) errors.push_back(error);
-  throw_all(errors);
-  return camera_model(desc);
+  for (const std::string& error : validate(sensor, desc.near, desc.far)) errors.push_back(error);
+  return errors;
 }
 
 /// A pose of the optical frame: x, y, z, qx, qy, qz, qw.
@@ -59,8 +52,9 @@ std::array<double, 7> numbers_of(const Pose& pose) {
 }
 
 std::array<double, 7> look_at(const std::array<double, 3>& eye, const std::array<double, 3>& target,
-                              const std::array<double, 3>& up) {
-  return numbers_of(view::look_at(Vector3(eye.data()), Vector3(target.data()), Vector3(up.data())));
+                              const std::optional<std::array<double, 3>>& up) {
+  const Vector3 from(eye.data()), to(target.data());
+  return numbers_of(up ? view::look_at(from, to, Vector3(up->data())) : view::look_at(from, to));
 }
 
 template <class Number>
@@ -90,10 +84,10 @@ py::list truth_list(const std::vector<view::CableTruth>& truth) {
   return cables;
 }
 
-/// What camera.Camera is made of.
+/// What camera.Camera is made of, of arguments without `errors_of` them.
 class CompiledCamera {
  public:
-  CompiledCamera(const CameraDesc& desc, SensorModel sensor) : lens_(model_of(desc, sensor)), sensor_(std::move(sensor)) {}
+  CompiledCamera(const CameraDesc& desc, const SensorModel& sensor) : lens_(camera_model(desc)), sensor_(sensor) {}
 
   const CameraModel& model() const { return lens_.model(); }
 
@@ -162,13 +156,25 @@ class CompiledCamera {
   std::shared_ptr<const view::Stage> last_;  ///< what it has prepared of meshes is used again
 };
 
-std::unique_ptr<CompiledCamera> make(int width, int height, double horizontal_fov, double near, double far,
-                                     const std::array<double, 5>& distortion, const std::array<double, 3>& axial,
-                                     double dropout_angle, double baseline, double disparity_step, double edge_dropout,
-                                     double edge_step) {
-  CameraDesc desc{width, height, horizontal_fov, distortion, near, far};
-  SensorModel sensor{axial, dropout_angle, baseline, disparity_step, edge_dropout, edge_step};
+/// Calls with what the arguments of Python's Camera are.
+template <class Result, Result (*call)(const CameraDesc&, const SensorModel&)>
+Result of_arguments(int width, int height, double horizontal_fov, double near, double far,
+                    const std::array<double, 5>& distortion, const std::array<double, 3>& axial, double dropout_angle,
+                    double baseline, double disparity_step, double edge_dropout, double edge_step) {
+  return call({width, height, horizontal_fov, distortion, near, far},
+              {axial, dropout_angle, baseline, disparity_step, edge_dropout, edge_step});
+}
+
+std::unique_ptr<CompiledCamera> make(const CameraDesc& desc, const SensorModel& sensor) {
   return std::make_unique<CompiledCamera>(desc, sensor);
+}
+
+/// Defines something with those arguments.
+template <class Define>
+void with_arguments(const Define& define) {
+  define(py::kw_only(), py::arg("width"), py::arg("height"), py::arg("horizontal_fov"), py::arg("near"), py::arg("far"),
+         py::arg("distortion"), py::arg("axial"), py::arg("dropout_angle"), py::arg("baseline"), py::arg("disparity_step"),
+         py::arg("edge_dropout"), py::arg("edge_step"));
 }
 
 /// {name: (camera, noise, source)}, both as arguments of camera.Camera.
@@ -205,10 +211,14 @@ py::list labels(const py::capsule& capsule) {
 PYBIND11_MODULE(_camera, module) {
   using namespace verlet_cable;
   module.doc() = "The compiled part of verlet_cable.camera.";
-  py::class_<CompiledCamera>(module, "CompiledCamera")
-      .def(py::init(&make), py::kw_only(), py::arg("width"), py::arg("height"), py::arg("horizontal_fov"), py::arg("near"),
-           py::arg("far"), py::arg("distortion"), py::arg("axial"), py::arg("dropout_angle"), py::arg("baseline"),
-           py::arg("disparity_step"), py::arg("edge_dropout"), py::arg("edge_step"))
+  py::class_<CompiledCamera> camera(module, "CompiledCamera");
+  with_arguments([&](const auto&... arguments) {
+    camera.def(py::init(&of_arguments<std::unique_ptr<CompiledCamera>, make>), arguments...);
+  });
+  with_arguments(
+      [&](const auto&... arguments) { module.def("errors", &of_arguments<std::vector<std::string>, errors_of>, arguments...); });
+  module.attr("most_pixels") = view::most_pixels;
+  camera
       .def_property_readonly("intrinsics",
                              [](const CompiledCamera& camera) {
                                const CameraModel& model = camera.model();
@@ -216,7 +226,7 @@ PYBIND11_MODULE(_camera, module) {
                              })
       .def("render", &CompiledCamera::render, py::arg("drawings"), py::arg("pose"), py::arg("seed"), py::arg("images"),
            py::arg("wanted"), py::arg("threads"));
-  module.def("look_at", &look_at, py::arg("eye"), py::arg("target"), py::arg("up"));
+  module.def("look_at", &look_at, py::arg("eye"), py::arg("target"), py::arg("up") = py::none());
   module.def("presets", &presets);
   module.def("labels", &labels, py::arg("drawings"));
 }

@@ -342,8 +342,9 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
   methods.add_edit(
       "set_frame", set_frame, py::arg("name"), py::arg("position"), py::arg("quaternion_xyzw"),
       "Sets the pose of a frame at the end of the next step and after it: position (3,) [m] and quaternion (4,) in the "
-      "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. The frame then no longer follows a "
-      "motion. Links of a robot below this frame follow it, unless their own pose is set. A frame of an attachment or "
+      "fixed frame; the quaternion is normalized, its norm must be from 0.5 to 2. settle() knows it only once that step is done. "
+      "The frame then no longer follows a motion. Links of a robot below this frame follow it, unless their own pose is set. A "
+      "frame of an attachment or "
       "guide that has neither a motion nor an initial_pose must be set before the first step: there it is at the start, "
       "too.\n\nRaises KeyError for a name that is not in frame_names, ValueError.");
   methods.add_edit(
@@ -357,7 +358,8 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       "Changes parameters of the running simulation, as the node's `~tuning` does: gravity (3,) [m/s^2] unless it is "
       "central; wind (3,) [m/s], the velocity of the fluid; the coefficient of friction between cables; and {material: "
       "{key: number}} for dampings, finite stiffnesses (bending_stiffness also as (2,), for a material with two different "
-      "ones), drag, friction and rolling_friction.\n\nRaises SceneError with all errors at once, under the names of "
+      "ones), drag, friction, rolling_friction, hardening, bending_friction, and a yield_curvature that is finite in the scene: "
+      "what is .inf there stays so.\n\nRaises SceneError with all errors at once, under the names of "
       "`~tuning`; ValueError, KeyError; then nothing is changed.");
 }
 

@@ -194,10 +194,11 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
           "Advances by a number of time steps. Returns their worst status, from good to bad 'ok', 'jumped', 'overstretched', "
           "'inside_obstacle', 'not_settled', 'degraded' or 'fault'. Other threads run meanwhile; Ctrl-C ends it between two "
           "steps.\n\nRaises ValueError if nothing has placed the frame of an attachment or guide; the message names all of them.")
-      .def(
-          "settle", settle,
-          "Puts the held cables into static equilibrium, with the frames where they are. False if one of them does not reach it; "
-          "the status is then 'not_settled' until the next step is done. Raises ValueError as step().")
+      .def("settle", settle,
+           "Puts the held cables into static equilibrium, with the frames where they are now: a pose that set_frame has set is "
+           "that "
+           "of the end of the next step, so make that step first. False if one of them does not reach it; the status is then "
+           "'not_settled' until the next step is done. Raises ValueError as step().")
       .def("__repr__", represent)
       .def_static("load", load, py::arg("scene"), py::arg("data"),
                   "The world of which save() returned the bytes `data`, or the service save_state wrote them to a file: there, "

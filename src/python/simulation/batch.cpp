@@ -82,7 +82,7 @@ class Batch::Threads {
 
 Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads,
              int threads, bool keeps_going)
-    : threads_(std::make_shared<Threads>(threads)), status_(scenes.size(), StepResult::Status::ok), errors_(scenes.size()) {
+    : threads_(std::make_shared<Threads>(threads)), status_(scenes.size()), errors_(scenes.size()) {
   std::map<const SceneDesc*, std::size_t> known;  // looked up only: its order does not matter
   std::optional<std::size_t> first;               // that is right
   std::optional<SceneError> wrong;
@@ -112,6 +112,7 @@ Batch::Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const 
   }
   if (!first) throw *wrong;
   for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
+  begin_status();
   events_.resize(worlds_.size());
   for (std::size_t i = 0; i < worlds_.size(); ++i) begin_events(i);
 }
@@ -124,14 +125,19 @@ Batch::Batch(const DrivenWorld& world, std::size_t count, int threads)
   for (DrivenWorld& copy : worlds_) copy.world().step_one_by_one(true);
 }
 
-Batch::Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, int threads)
+Batch::Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, std::vector<StepResult::Status> status,
+             int threads)
     : threads_(std::make_shared<Threads>(threads)),
       worlds_(std::move(worlds)),
       events_(worlds_.size()),
-      status_(worlds_.size(), StepResult::Status::ok),
+      status_(std::move(status)),
       errors_(std::move(errors)) {
-  errors_.resize(worlds_.size());
   for (DrivenWorld& world : worlds_) world.world().step_one_by_one(true);
+}
+
+void Batch::begin_status() {
+  for (std::size_t i = 0; i < status_.size(); ++i)
+    status_[i] = errors_[i].empty() ? StepResult::Status::ok : StepResult::Status::fault;
 }
 
 void Batch::begin_events(std::size_t world) {
@@ -264,8 +270,7 @@ void Batch::begin_steps(std::int64_t steps, std::int64_t record_every, const std
   records_ = std::move(records);
   record_every_ = record_every;
   steps_done_ = 0;
-  for (std::size_t i = 0; i < worlds_.size(); ++i)
-    status_[i] = errors_[i].empty() ? StepResult::Status::ok : StepResult::Status::fault;
+  begin_status();
 }
 
 void Batch::advance(std::int64_t steps) {

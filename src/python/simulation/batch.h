@@ -38,8 +38,8 @@ class Batch {
   /// of the first world that is right, which is never stepped, and what is wrong in `errors`.
   Batch(const std::vector<std::shared_ptr<const SceneDesc>>& scenes, const Motion& motion, const LoadPlayer& loads, int threads,
         bool keeps_going = false);
-  /// These, of scenes that differ in no more than numbers; see `errors`.
-  Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, int threads);
+  /// These, of scenes that differ in no more than numbers; see `errors` and `status`, of which there is one for each.
+  Batch(std::vector<DrivenWorld> worlds, std::vector<std::string> errors, std::vector<StepResult::Status> status, int threads);
   /// So many copies of a world as it is.
   Batch(const DrivenWorld& world, std::size_t count, int threads);
 
@@ -90,7 +90,7 @@ class Batch {
 
   /// Null where the last step recorded nothing.
   const Records* records() const { return records_ ? &*records_ : nullptr; }
-  /// The worst of each world since `begin_steps`.
+  /// The worst of each world since `begin_steps`; fault where there is an error.
   const std::vector<StepResult::Status>& status() const { return status_; }
 
   /// True where all that is held found an equilibrium.
@@ -100,6 +100,7 @@ class Batch {
   class Threads;
 
   void advance(std::size_t first, std::size_t last, std::int64_t steps);
+  void begin_status();
   void begin_events(std::size_t world);
   void refuse_frame(std::size_t world, const std::string& name) const;
   void replace(std::vector<DrivenWorld> worlds, const std::vector<char>& begun);

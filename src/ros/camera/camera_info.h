@@ -13,7 +13,7 @@ sensor_msgs::CameraInfo info_of(const view::CameraModel& model);
 
 /// What a driver says of its camera.
 struct ReceivedModel {
-  std::string problem;      ///< why it cannot be used, with the field, its value and what is allowed; empty: it can
+  std::string problem;      ///< all why it cannot be used, with field, value and what is allowed; empty: it can
   view::CameraModel model;  ///< with any depth range
 };
 ReceivedModel model_of(const sensor_msgs::CameraInfo& info, double near, double far);

@@ -123,7 +123,7 @@ void check(const Value& root, const CameraSettings& settings) {
   std::vector<std::string> problems = view::validate(settings.camera);
   if (problems.empty()) problems = view::validate(view::camera_model(settings.camera));
   root.errors->add_validation(problems);
-  root.errors->add_validation(view::validate(settings.sensor));
+  root.errors->add_validation(view::validate(settings.sensor, settings.camera.near, settings.camera.far));
 }
 
 /// Whoever names a robot has one.

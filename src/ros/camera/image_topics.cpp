@@ -8,7 +8,6 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
-#include <set>
 
 #include "camera/pixels.h"
 #include "publish/conversions.h"
@@ -96,10 +95,8 @@ void TruthTopic::publish(const Shot& shot) const {
   const auto message = boost::make_shared<CableView>();
   message->header = shot.header;
   message->labels = view::labels(shot.stage.drawing());
-  std::set<std::string> cables;  // nets and particles are numbered with them
-  for (const Cable& cable : shot.state.cables) cables.insert(cable.name);
   for (const view::CableTruth& cable : view::find_truth(shot.stage, shot.lens.model(), shot.pose)) {
-    if (cables.count(cable.name) == 0) continue;
+    if (cable.positions.empty()) continue;  // it waits for its frames
     message->cables.push_back(cable.name);
     message->first.push_back(static_cast<std::uint32_t>(message->positions.size()));
     for (const Vector3& position : cable.positions) message->positions.push_back(to_point(position));

@@ -8,7 +8,7 @@ namespace verlet_cable {
 namespace {
 
 constexpr std::uint32_t queue_size = 5;
-constexpr double log_period = 5;  // [s] between warnings about what may last
+const ros::WallDuration reminder_period(10.0);  // between warnings of the same
 
 bool are_equal(const view::CameraModel& a, const view::CameraModel& b) {
   return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
@@ -34,11 +34,20 @@ Intrinsics::Intrinsics(ros::NodeHandle& node, const CameraSettings& settings, co
 void Intrinsics::receive(const sensor_msgs::CameraInfoConstPtr& info) {
   const ReceivedModel received = model_of(*info, near_, far_);
   if (!received.problem.empty()) {
-    ROS_WARN_THROTTLE(log_period, "topic %s: refused %s", topic_.c_str(), received.problem.c_str());
+    warn_of(received.problem);
     return;
   }
   info_ = *info;
   if (!lens_ || !are_equal(lens_->model(), received.model)) lens_ = std::make_shared<view::Lens>(received.model);
+}
+
+void Intrinsics::warn_of(const std::string& problem) {
+  const ros::WallTime now = ros::WallTime::now();
+  if (problem == last_problem_ && now < next_warning_) return;
+  last_problem_ = problem;
+  next_warning_ = now + reminder_period;
+  ROS_WARN("topic %s: refused %s%s", topic_.c_str(), problem.c_str(),
+           lens_ ? "; the camera goes on with what came before" : "; there are no images until one can be used");
 }
 
 bool Intrinsics::are_wanted() const {

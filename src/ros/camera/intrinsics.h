@@ -27,12 +27,16 @@ class Intrinsics {
 
  private:
   void receive(const sensor_msgs::CameraInfoConstPtr& info);
+  /// Each problem as it comes, and again while it lasts.
+  void warn_of(const std::string& problem);
 
   const std::string frame_;
   const double near_, far_;
   const std::string topic_;                 ///< of the driver; empty: none
   std::vector<ros::Publisher> publishers_;  ///< but for a topic that the driver publishes itself
   ros::Subscriber subscriber_;
+  std::string last_problem_;
+  ros::WallTime next_warning_;  ///< of that
   sensor_msgs::CameraInfo info_;
   std::shared_ptr<const view::Lens> lens_;
 };

@@ -128,18 +128,26 @@ class Things {
   std::map<std::string, std::size_t> places_;
 };
 
-/// In the order of their ids; what waits for its frames is not there, and keeps its number.
+/// In the order of their ids; what waits for its frames is not there, and keeps its number. The looks are those of cables, then
+/// nets, then particles: what is not there is of the kind of what is before it.
 void add_looks(const CableArray& state, const Appearance& appearance, view::Drawing& drawing) {
   const Named<Cable> cables(state.cables);
   const Named<Net> nets(state.nets);
   const Named<Particle> particles(state.particles);
+  Kind kind = Kind::cable;
   for (const Look& look : appearance.looks) {
     view::Thing thing;
-    if (const Cable* cable = cables.find(look.name)) thing = cable_thing(*cable, look);
-    if (const Net* net = nets.find(look.name)) thing = net_thing(*net, look);
-    if (const Particle* particle = particles.find(look.name)) thing = particle_thing(*particle, look);
+    if (const Cable* cable = cables.find(look.name)) {
+      thing = cable_thing(*cable, look);
+    } else if (const Net* net = nets.find(look.name)) {
+      thing = net_thing(*net, look);
+      kind = Kind::net;
+    } else if (const Particle* particle = particles.find(look.name)) {
+      thing = particle_thing(*particle, look);
+      kind = Kind::particle;
+    }
     thing.name = look.name;
-    thing.kind = Kind::cable;
+    thing.kind = kind;
     drawing.things.push_back(std::move(thing));
   }
 }

@@ -14,7 +14,9 @@ constexpr std::uint32_t appearance_queue_size = 100;
 constexpr std::size_t most_waiting = 100;     // a second of states, as many as a cable node has in its queue
 const ros::WallDuration retry_period(0.002);  // tf has no call for what comes
 constexpr double log_period = 5;              // [s] between warnings about what may last
-constexpr double rounding = 1e-6;             // of a period: stamps are on its edges
+const ros::WallDuration first_warning(5.0);   // a cable node may have been started together with the camera, and may need so long
+const ros::WallDuration reminder_period(10.0);  // between warnings that there are no states
+constexpr double rounding = 1e-6;               // of a period: stamps are on its edges
 
 std::string beside(const std::string& topic, const std::string& name) {
   return ros::names::append(ros::names::parentNamespace(topic), name);
@@ -30,14 +32,20 @@ MomentSource::MomentSource(const ros::NodeHandle& node, const CameraSettings& se
       patience_(settings.tf_timeout),
       take_(std::move(take)),
       retry_(node_.createWallTimer(
-          retry_period, [this](const ros::WallTimerEvent&) { run_guarded("a try", [this] { offer_all(); }); }, false, false)) {}
+          retry_period, [this](const ros::WallTimerEvent&) { run_guarded("a try", [this] { offer_all(); }); }, false, false)),
+      watch_(node_.createWallTimer(
+          ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { run_guarded("a look", [this] { warn_of_silence(); }); },
+          false, false)) {}
 
 void MomentSource::listen(bool wanted) {
   if (wanted == static_cast<bool>(states_)) return;
   waiting_.clear();
   received_.clear();
   has_appearance_ = true;
+  has_state_ = false;
+  next_warning_ = ros::WallTime::now() + first_warning;
   if (!wanted) {
+    watch_.stop();
     states_.shutdown();
     appearances_.shutdown();
     states_ = appearances_ = ros::Subscriber();
@@ -46,9 +54,22 @@ void MomentSource::listen(bool wanted) {
   const auto now = ros::TransportHints().tcpNoDelay();
   appearances_ = node_.subscribe(appearance_topic_, appearance_queue_size, &MomentSource::receive_appearance, this, now);
   states_ = node_.subscribe(state_topic_, state_queue_size, &MomentSource::receive_state, this, now);
+  watch_.start();
+}
+
+/// Nobody publishes it, or nothing has come: the name may be wrong. Of a bag that stands, states need not come for a while.
+void MomentSource::warn_of_silence() {
+  const ros::WallTime now = ros::WallTime::now();
+  const bool has_publisher = states_.getNumPublishers() > 0;
+  if (has_publisher && has_state_) next_warning_ = now + first_warning;
+  if (now < next_warning_) return;
+  next_warning_ = now + reminder_period;
+  ROS_WARN("no images: %s %s, the topic of the parameter state; allowed: that of a cable node, such as /cable/state",
+           has_publisher ? "nothing comes on" : "nobody publishes", state_topic_.c_str());
 }
 
 void MomentSource::receive_state(const CableArrayConstPtr& state) {
+  has_state_ = true;
   if (!is_due(state->header.stamp)) return;
   if (waiting_.size() == most_waiting) waiting_.pop_front();
   waiting_.push_back({state, ros::WallTime::now() + patience_});

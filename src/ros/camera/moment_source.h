@@ -35,6 +35,7 @@ class MomentSource {
   bool is_due(const ros::Time& stamp);
   void offer_all();
   std::string offer(const CableArrayConstPtr& state, bool is_last);
+  void warn_of_silence();
 
   ros::NodeHandle node_;
   const std::string state_topic_;
@@ -47,9 +48,11 @@ class MomentSource {
   bool has_appearance_ = true;  ///< until a state came, and nobody published any
   ros::Time last_stamp_;        ///< of what was due last
   ros::WallTime last_due_;
-  ros::Subscriber states_;  ///< it and those below call this, and go first
+  bool has_state_ = false;      ///< since it listens
+  ros::WallTime next_warning_;  ///< of the lack of states
+  ros::Subscriber states_;      ///< it and those below call this, and go first
   ros::Subscriber appearances_;
-  ros::WallTimer retry_;
+  ros::WallTimer retry_, watch_;
 };
 
 }  // namespace verlet_cable

@@ -3,13 +3,12 @@
     from verlet_cable.camera import Camera
     from verlet_cable.sim import Scene, World
 
-    camera = Camera(width=640, height=480, noise={'axial': [0.001, 0, 0.002], 'dropout_angle': 80})
-    camera.look_at(eye=[0.5, -1.2, 1.0], target=[0, 0, 0.4])
-    world = World(Scene.load('config/first_rope.yaml'))
+    camera = Camera(noise={'axial': [0.001, 0, 0.002], 'dropout_angle': 80}).look_at(eye=[0.5, -1.5, 1.0], target=[0.5, 0, 0.8])
+    world = World(Scene.load('config/hanging_cable.yaml'))  # a file of the package
     images = camera.render(world)
-    images['depth']                       # (480, 640) float32 [m], NaN where nothing is seen
-    images['rgb'], images['mask']         # (480, 640, 3) uint8, (480, 640) uint16
-    images['truth']['rope']['visible']    # (n + 1,) bool
+    depth = images['depth']                        # (480, 640) float32 [m], NaN where there is none
+    rgb, mask = images['rgb'], images['mask']      # (480, 640, 3) uint8, (480, 640) uint16
+    visible = images['truth']['rope']['visible']   # (n + 1,) bool: which nodes are
 
 Needs Embree where it is built (Debian: libembree-dev). `verlet_cable.camera.coco` writes data sets to learn from.
 """

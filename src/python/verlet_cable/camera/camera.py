@@ -36,10 +36,10 @@ class Camera:
     """A depth camera at a pose, which sees worlds.
 
     width, height: [pixels]. horizontal_fov: [rad] from the left edge of the image to the right one. near, far: [m] depths that are
-    seen. distortion: k1, k2, t1, t2, k3 of the model plumb_bob, as in sensor_msgs/CameraInfo.
+    measured: what is nearer has no depth, but hides what is behind it; beyond far nothing is seen. distortion: k1, k2, t1, t2, k3 of the model plumb_bob, as in sensor_msgs/CameraInfo.
 
     noise: what the sensor does to depth, a dict with some of the keys
-        axial: (a, b, c): the standard deviation at the depth z is a + b z + c z^2 [m]
+        axial: (a, b, c): the standard deviation at the depth z is a + b z + c z^2 [m], nowhere below 0 from near to far
         dropout_angle: [degree] no depth where the line of sight is further from the surface's normal
         baseline: [m] place of the second imager, or the projector, along x of the optical frame: no depth where that sees nothing
         disparity_step: [pixels] to which disparities are rounded
@@ -59,26 +59,21 @@ class Camera:
     ) -> None:
         self._arguments = {'width': width, 'height': height, 'horizontal_fov': horizontal_fov, 'near': near, 'far': far, 'noise': noise,
                            'seed': seed, 'distortion': distortion, 'preset': preset, 'threads': threads}
-        camera, sensor = _preset(preset)
-        given = {'width': width, 'height': height, 'horizontal_fov': horizontal_fov, 'near': near, 'far': far, 'distortion': distortion}
-        camera.update({key: value for key, value in given.items() if value is not None})
-        sensor.update(_checked_noise(noise))
-        errors = [_wrong(key, value, 'an integer') for key, value in list(camera.items()) if key in ('width', 'height') and
-                  not _is_integer(value)]
-        for name, numbers in ((name, value) for name, value in {**camera, **{f'noise.{k}': v for k, v in sensor.items()}}.items()
-                              if name not in ('width', 'height')):
-            errors += _number_errors(name, numbers)
-        if errors:
-            raise ValueError('\n'.join(errors))
-        self._seed = _integer('seed', seed, 0, _SEEDS - 1)
-        self._threads = _integer('threads', threads, 0, _MOST_THREADS)
-        self._width, self._height = _integer('width', camera['width']), _integer('height', camera['height'])
-        self._near, self._far = float(camera['near']), float(camera['far'])
-        self._distortion = tuple(map(float, camera['distortion']))
-        self._camera = _camera.CompiledCamera(
-            width=_bounded(self._width), height=_bounded(self._height), horizontal_fov=float(camera['horizontal_fov']), near=self._near,
-            far=self._far, distortion=self._distortion, axial=tuple(map(float, sensor.pop('axial'))),
-            **{key: float(value) for key, value in sensor.items()})
+        checks = _Checks()
+        numbers, noises = _preset(preset, checks)
+        for key, value in (('width', width), ('height', height)):
+            if value is not None:
+                numbers[key] = checks.integer(key, value, 1, _camera.most_pixels, numbers[key], ' [pixels]')
+        for key, value in (('horizontal_fov', horizontal_fov), ('near', near), ('far', far), ('distortion', distortion)):
+            if value is not None:
+                numbers[key] = checks.numbers(key, value, numbers[key])
+        for key, value in checks.noise(noise).items():
+            noises[key] = checks.numbers(f'noise.{key}', value, noises[key])
+        self._seed = checks.integer('seed', seed, 0, _SEEDS - 1)
+        self._threads = checks.integer('threads', threads, 0, _MOST_THREADS)
+        checks.add(_camera.errors(**numbers, **noises))
+        self._camera = _camera.CompiledCamera(**numbers, **noises)
+        self._width, self._height, self._distortion = numbers['width'], numbers['height'], tuple(numbers['distortion'])
         self._pose: Tuple[float, ...] = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0)
 
     def __reduce__(self) -> Tuple[Any, ...]:
@@ -121,16 +116,16 @@ class Camera:
             raise ValueError(_wrong('pose', pose, 'x, y, z, qx, qy, qz, qw with a quaternion of length 1'))
         self._pose = (*map(float, numbers[:3]), *map(float, numbers[3:] / length))
 
-    def look_at(self, eye: ArrayLike, target: ArrayLike, up: ArrayLike = (0, 0, 1)) -> Camera:
-        """Puts the camera at `eye` so that it has `target` in the middle of its image, and the direction `up` upwards in it. Returns
-        the camera. Raises ValueError where that cannot be."""
-        places = (tuple(map(float, _vector(name, value, 3))) for name, value in (('eye', eye), ('target', target), ('up', up)))
-        self._pose = tuple(_camera.look_at(*places))
+    def look_at(self, eye: ArrayLike, target: ArrayLike, up: Optional[ArrayLike] = None) -> Camera:
+        """Puts the camera at `eye` so that it has `target` in the middle of its image, and the direction `up` upwards in it; None: z,
+        or, from straight above or below, y. Returns the camera. Raises ValueError where that cannot be."""
+        given = [('eye', eye), ('target', target)] + ([] if up is None else [('up', up)])
+        self._pose = tuple(_camera.look_at(*(tuple(map(float, _vector(name, value, 3))) for name, value in given)))
         return self
 
     def labels(self, world: Union[World, Batch]) -> List[str]:
-        """The names of what is in a world (of a batch: its first), in the order of their numbers in masks, from 1 on: cables, bodies,
-        then nets, particles and obstacles."""
+        """The names of what is in a world (of a batch: its first), in the order of their numbers in masks, from 1 on: cables, nets,
+        particles, bodies and obstacles."""
         drawings, _ = _drawings(world, {})
         return _camera.labels(drawings)[0]
 
@@ -141,9 +136,9 @@ class Camera:
     ) -> Dict[str, Any]:
         """A dict with what is asked for in `images`:
 
-        depth:  (height, width) float32 [m] along the line of sight's z axis, NaN where there is none
-        rgb:    (height, width, 3) uint8
-        mask:   (height, width) uint16: 0 where nothing is seen, 1 for the first of labels(world), ...
+        depth:  (height, width) float32 [m] along the line of sight's z axis, NaN where there is none, or it is below near
+        rgb:    (height, width, 3) uint8, from the lens on, so also of what is nearer than near
+        mask:   (height, width) uint16: 0 where nothing is seen, 1 for the first of labels(world), ...; from the lens on, as rgb
         points: (height, width, 3) float32 [m] of depth, in the optical frame, NaN where there is none
         truth:  {cable: {positions: (n + 1, 3) [m] of its nodes in the optical frame, u, v: (n + 1,) [pixels], NaN for what is not in
                 front of the camera, visible: (n + 1,) bool}}. A node is visible if it is in the image, from near to far, and what is
@@ -197,21 +192,47 @@ def _integer(name: str, value: Any, least: int = -_SEEDS, most: int = _SEEDS) ->
     return operator.index(value)
 
 
-def _bounded(value: int) -> int:
-    """What the compiled module's integers hold; it says what is allowed."""
-    return max(-1, min(value, 1 << 30))
+class _Checks:
+    """Collects what is wrong with arguments; in place of what is wrong others are checked with what is right."""
 
+    def __init__(self) -> None:
+        self._lines: List[str] = []
 
-def _number_errors(name: str, value: Any) -> List[str]:
-    """Of what is no number, or not as many as there must be; which numbers are allowed the compiled module says."""
-    counts = {'distortion': ('five numbers k1, k2, t1, t2, k3', 5), 'noise.axial': ('three numbers a, b, c', 3)}
-    words, count = counts.get(name, ('a number', 0))
-    try:
-        numbers = np.asarray(value, dtype=np.float64)
-    except (TypeError, ValueError):
-        return [_wrong(name, value, words)]
-    fits = numbers.shape == ((count,) if count else ()) and not isinstance(value, (str, bytes, bool))
-    return [] if fits else [_wrong(name, value, words)]
+    def refuse(self, name: str, value: Any, allowed: str) -> None:
+        self._lines.append(_wrong(name, value, allowed))
+
+    def integer(self, name: str, value: Any, least: int, most: int, right: int = 0, unit: str = '') -> int:
+        if _is_integer(value) and least <= operator.index(value) <= most:
+            return operator.index(value)
+        self.refuse(name, value, f'an integer{unit} (from {least} to {most})')
+        return right
+
+    def numbers(self, name: str, value: Any, right: Any) -> Any:
+        """A float, or a tuple of them; which are allowed the compiled module says."""
+        counts = {'distortion': ('five numbers k1, k2, t1, t2, k3', 5), 'noise.axial': ('three numbers a, b, c', 3)}
+        words, count = counts.get(name, ('a number', 0))
+        try:
+            numbers = np.asarray(value, dtype=np.float64)
+        except (TypeError, ValueError):
+            numbers = np.empty(0)
+        if numbers.shape == ((count,) if count else ()) and not isinstance(value, (str, bytes, bool)):
+            return tuple(numbers.tolist()) if count else float(numbers)
+        self.refuse(name, value, words)
+        return right
+
+    def noise(self, noise: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
+        if noise is not None and not isinstance(noise, Mapping):
+            self.refuse('noise', noise, 'a dict with some of the keys ' + ', '.join(_NOISE))
+            return {}
+        given = dict(noise or {})
+        self._lines += [f'noise.{key}: no such key{meant(str(key), _NOISE)}; allowed: {", ".join(_NOISE)}' for key in given
+                        if key not in _NOISE]
+        return {key: value for key, value in given.items() if key in _NOISE}
+
+    def add(self, lines: Sequence[str]) -> None:
+        """Raises ValueError with all lines, if there are any."""
+        if self._lines or lines:
+            raise ValueError('\n'.join([*self._lines, *lines]))
 
 
 def _vector(name: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
@@ -225,25 +246,15 @@ def _vector(name: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
     return numbers
 
 
-def _preset(name: Optional[str]) -> Tuple[Dict[str, Any], Dict[str, Any]]:
+def _preset(name: Optional[str], checks: _Checks) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     """Arguments and noise to begin with."""
     if name is None:
         return dict(_CAMERA), dict(_NOISE)
     known = presets()
     if name not in known:
-        raise ValueError(_wrong('preset', name, ', '.join(sorted(known))))
+        checks.refuse('preset', name, ', '.join(sorted(known)))
+        return dict(_CAMERA), dict(_NOISE)
     return dict(known[name].camera), dict(known[name].noise)
-
-
-def _checked_noise(noise: Optional[Mapping[str, Any]]) -> Dict[str, Any]:
-    if noise is None:
-        return {}
-    if not isinstance(noise, Mapping):
-        raise ValueError(_wrong('noise', noise, 'a dict with some of the keys ' + ', '.join(_NOISE)))
-    unknown = [f'noise.{key}: no such key{meant(str(key), _NOISE)}; allowed: {", ".join(_NOISE)}' for key in noise if key not in _NOISE]
-    if unknown:
-        raise ValueError('\n'.join(unknown))
-    return dict(noise)
 
 
 def _checked_images(images: Sequence[str]) -> List[str]:

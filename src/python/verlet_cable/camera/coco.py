@@ -3,12 +3,12 @@
     from verlet_cable.camera import Camera, coco
     from verlet_cable.sim import Scene, World
 
-    world = World(Scene.load('scene.yaml'))
+    world = World(Scene.load('config/hanging_cable.yaml'))  # a file of the package
     camera = Camera(preset='realsense_d435')
     with coco.Dataset('cables', seed=1) as dataset:
-        for _ in range(1000):
-            world.step(10)
-            dataset.add(camera, world, target=[0, 0, 0.5])
+        for _ in range(10):
+            status = world.step(10)
+            dataset.add(camera, world, target=[0.5, 0, 0.8])
 
 Needs Pillow (Debian: python3-pil).
 """
@@ -43,8 +43,8 @@ class Dataset:
     keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies; image k
     depends on it and k only.
 
-    annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints) and the
-    category cable; and beside that, of images: matrix, distortion and pose of the camera, the light, labels and crossings; of
+    annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
+    that has pixels in the image, and of no other) and the category cable; and beside that, of images: matrix, distortion and pose of the camera, the light, labels and crossings; of
     annotations: cable (its name), positions [m] of its keypoints in the optical frame, and mask (its number in masks).
     """
 
@@ -61,6 +61,7 @@ class Dataset:
             raise ValueError(_wrong('path', str(path), 'a directory that is new or empty'))
         for name in ('images', 'masks', 'depth'):
             (self._path / name).mkdir(parents=True, exist_ok=True)
+        self._is_closed = False
         self._images: List[Dict[str, Any]] = []
         self._annotations: List[Dict[str, Any]] = []
 
@@ -83,7 +84,11 @@ class Dataset:
         target: (3,) [m] what the camera is turned to, from a place that is drawn at random, for each call: at a distance [m] and an
         elevation [degree] between two numbers, from any side. None: the camera stays where it is. vary_looks: light, background and
         all colors and patterns are drawn at random, too, but for those that light, background and looks say as of Camera.render.
+        Raises ValueError, also once the data set is closed.
         """
+        if self._is_closed:
+            raise ValueError(f'add: {self._path} is closed, and its annotations.json is written; allowed: add() before close(), within '
+                             '`with`, or a new Dataset in another directory')
         random = np.random.default_rng([self._seed, len(self._images)])
         if target is not None:
             camera.look_at(*_random_view(random, _vector('target', target, 3), distance, elevation))
@@ -100,7 +105,8 @@ class Dataset:
             self._add(camera, labels, appearance, {name: seen[name][index] for name in ('depth', 'rgb', 'mask')}, truth)
 
     def close(self) -> None:
-        """Writes annotations.json."""
+        """Writes annotations.json; nothing more can be added."""
+        self._is_closed = True
         names = [f'{index}' for index in range(self._keypoints)]
         category = {'id': _CATEGORY, 'name': 'cable', 'supercategory': 'cable', 'keypoints': names,
                     'skeleton': [[index, index + 1] for index in range(1, self._keypoints)]}
@@ -121,7 +127,9 @@ class Dataset:
             'depth_file': f'depth/{name}', 'matrix': camera.matrix.tolist(), 'distortion': list(camera.distortion),
             'pose': camera.pose.tolist(), 'light': _plain(appearance.get('light', {})), 'labels': labels, 'crossings': crossings(truth)})
         for number, (cable, nodes) in enumerate(truth.items(), 1):
-            self._annotations.append(self._annotation(identity, number, cable, nodes, camera, seen['mask'] == number))
+            pixels = seen['mask'] == number
+            if pixels.any():
+                self._annotations.append(self._annotation(identity, number, cable, nodes, camera, pixels))
 
     def _annotation(
         self, image: int, number: int, cable: str, nodes: Dict[str, Any], camera: Camera, pixels: NDArray[np.bool_],
@@ -198,8 +206,6 @@ def _run_lengths(pixels: NDArray[np.bool_]) -> List[int]:
 def _box(pixels: NDArray[np.bool_]) -> List[int]:
     """x, y, width, height."""
     rows, columns = np.flatnonzero(pixels.any(axis=1)), np.flatnonzero(pixels.any(axis=0))
-    if not len(rows):
-        return [0, 0, 0, 0]
     return [int(columns[0]), int(rows[0]), int(columns[-1] - columns[0] + 1), int(rows[-1] - rows[0] + 1)]
 
 
