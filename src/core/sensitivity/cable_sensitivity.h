@@ -56,6 +56,7 @@ class CableSensitivity {
     ColumnVector gravity, wind;
   };
 
+  // cable_constants.cpp
   template <class Change>
   void each_column(const Columns& columns, SensitivityColumn::Kind kind, const Change& change) const;
   Numbers numbers_of(const Columns& columns, const State& state) const;
@@ -69,7 +70,26 @@ class CableSensitivity {
   void set_clamps(const State& state, const Numbers& numbers, const KinematicTargets& targets, double h, bool is_static,
                   Columns& columns) const;
   void set_spin(const Numbers& numbers, double h, Columns& columns) const;
+  // cable_step.cpp
+  /// That is retraced.
+  struct Step {
+    const State& state;  ///< after it
+    Numbers numbers;
+    double h = 0;  ///< [s]
+    int segments = 0;
+    std::vector<ColumnVector> wanted = {}, means = {};  ///< holders: places at the end [m], mean velocities [m/s]
+    std::vector<Column> mobility = {};                  ///< nodes [1/kg]; 0 where held
+    std::vector<ColumnVector> velocities = {};          ///< nodes, at the end [m/s]
+    std::vector<ColumnVector> ends = {};                ///< segments, at the end [m]
+    std::vector<ColumnVector> forces = {};              ///< nodes: on their holders [N]
+  };
   std::string follow(const State& state, Columns& first, Columns& columns);
+  std::string follow_holders(Columns& columns, Step& step) const;
+  void start_with_holders(Columns& columns, const Step& step) const;
+  std::string find_solution(Columns& first, Columns& columns, const Step& step) const;
+  void find_velocities(const Columns& columns, Step& step) const;
+  void project(const Columns& columns, Step& step) const;
+  bool advance(Columns& columns, const Step& step) const;
   std::string clean(const Numbers& numbers, const std::vector<Column>& start_multipliers, double h,
                     std::vector<ColumnVector>& forces, Columns& columns) const;
   void set_wrenches(const State& state, const std::vector<ColumnVector>& forces, const KinematicTargets& targets,
