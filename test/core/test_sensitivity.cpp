@@ -363,6 +363,7 @@ TEST(Sensitivity, RefusesWhatItDoesNotKnow) {
   moving.step(hand_at(numbers, 0.05));
   EXPECT_NE("", refusal(moving, {"drag:cable"}));
   scene.materials[0].material.bending_stiffness = {0.01, 0.02};
+  scene.materials[0].material.torsional_stiffness = 0.014;
   EXPECT_NE(std::string::npos, refusal(World(scene, hand_at(numbers, 0)), {"drag:cable"}).find("whole rod"));
 }
 
@@ -373,7 +374,7 @@ TEST(Sensitivity, EndsWhereACableIsTouched) {
   ObstacleDesc wall;
   wall.name = "wall";
   wall.type = ShapeType::plane;
-  wall.pose.position = {0, 0, -1.02};
+  wall.pose = {0, 0, -1.02, 0, 0, 0};
   scene.obstacles.push_back(wall);
   World world(scene, hand_at(numbers, 0));
   Sensitivity sensitivity(world, {"drag:cable"}, Start::settled);

@@ -17,7 +17,7 @@ constexpr int newton_iterations = 4;
 }  // namespace
 
 CableSensitivity::CableSensitivity(int cable, const State& state, const std::vector<SensitivityColumn>& columns)
-    : cable_(cable), count_(static_cast<int>(columns.size())) {
+    : cable_(cable), before_(state.cables[cable]), targets_(state.cable_progress[cable].targets), scene_(state.scene) {
   const CableState& of_cable = state.cables[cable].state;
   const int n = of_cable.segments();
   for (std::size_t first = 0; first < columns.size(); first += columns_at_once) {
@@ -128,12 +128,16 @@ std::string CableSensitivity::settle(const State& state) {
 std::string CableSensitivity::begin_step(const State& state) {
   const SimulatedCable& cable = state.cables[cable_];
   const CableState& now = cable.state;
-  if (has_begun_ && (cable.model != before_.model || scene_ != state.scene || now.positions != before_.state.positions ||
-                     now.velocities != before_.state.velocities || now.rest_lengths != before_.state.rest_lengths))
-    return "it was edited or tuned, or the world has settled";
+  const KinematicTargets& targets = state.cable_progress[cable_].targets;
+  const auto is_same = [](const auto& a, const auto& b) { return a.attachment == b.attachment && a.node == b.node; };
+  const auto are_same = [&](const auto& a, const auto& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same); };
+  if (cable.model != before_.model || scene_ != state.scene || now.positions != before_.state.positions ||
+      now.velocities != before_.state.velocities || now.rest_lengths != before_.state.rest_lengths ||
+      now.masses != before_.state.masses || !are_same(targets.nodes, targets_.nodes) ||
+      !are_same(targets.directions, targets_.directions))
+    return "it was edited or tuned, or the world was settled";
   before_ = cable;
-  scene_ = state.scene;
-  targets_ = state.cable_progress[cable_].targets;
+  targets_ = targets;
   if (now.unresolved.damped > 0) return "a substep damps motion that is too fast for the time step";
   return unsupported(cable_, state);
 }
@@ -144,7 +148,7 @@ std::string CableSensitivity::end_step(const State& state) {
     if (!problem.empty()) return problem;
   }
   before_ = state.cables[cable_];
-  has_begun_ = true;
+  targets_ = state.cable_progress[cable_].targets;
   return {};
 }
 

@@ -98,13 +98,11 @@ class CableSensitivity {
   void read(int rows, const Number& number, double* to) const;
 
   int cable_;
-  int count_ = 0;  ///< of columns
   std::vector<Columns> columns_;
-  // Before the step
+  // After the last step, or before that which is done
   SimulatedCable before_;
   KinematicTargets targets_;
   std::shared_ptr<const SceneDesc> scene_;
-  bool has_begun_ = false;
 };
 
 }  // namespace verlet_cable

@@ -188,10 +188,10 @@ StepResult Sensitivity::step(World& world, const BoundaryInputs& inputs) {
     };
     const std::vector<SimulatedContact>& contacts = w.findings.contacts;
     std::string problem;
-    if (w.cable_outcomes.value[cable].result.substeps > 1)
-      problem = "its step is split into substeps";
-    else if (std::any_of(contacts.begin(), contacts.end(), is_of_cable))
+    if (std::any_of(contacts.begin(), contacts.end(), is_of_cable))
       problem = "it touches something";
+    else if (w.cable_outcomes.value[cable].result.substeps > 1)
+      problem = "its step is split into substeps";
     else
       problem = c.end_step(w.state);
     if (!problem.empty()) own.lose(cable, time, problem);
