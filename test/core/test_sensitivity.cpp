@@ -240,7 +240,7 @@ TEST(Sensitivity, CarriedAlongIsThatOfDifferences) {
     World world(scene_of(kind, numbers, true), hand_at(numbers, 0));
     Sensitivity sensitivity(world, parameters_of(kind), Start::settled);
     for (int i = 1; i <= steps; ++i) sensitivity.step(world, hand_at(numbers, 0.002 * i));
-    ASSERT_EQ("", sensitivity.lost(0)) << kind.name;
+    ASSERT_EQ("", sensitivity.lost(world, 0)) << kind.name;
     // Damping of bending has kinks, where differences have to be of small steps, and are the less accurate.
     const bool is_damped = kind.bending_damping > 0;
     compare(kind, sensitivity, world, steps, true, 0.02, {&Outputs::positions}, {is_damped ? 5e-6 : 1e-6, 1e-9});
@@ -379,11 +379,11 @@ TEST(Sensitivity, EndsWhereACableIsTouched) {
   World world(scene, hand_at(numbers, 0));
   Sensitivity sensitivity(world, {"drag:cable"}, Start::settled);
   BoundaryInputs inputs = hand_at(numbers, 0);
-  for (int i = 0; i < 100 && sensitivity.lost(0).empty(); ++i) {
+  for (int i = 0; i < 100 && sensitivity.lost(world, 0).empty(); ++i) {
     inputs[1].pose.position.z() -= 0.002;
     sensitivity.step(world, inputs);
   }
-  EXPECT_NE(std::string::npos, sensitivity.lost(0).find("it touches something")) << sensitivity.lost(0);
+  EXPECT_NE(std::string::npos, sensitivity.lost(world, 0).find("it touches something")) << sensitivity.lost(world, 0);
 }
 
 TEST(Sensitivity, EndsWithAnEdit) {
@@ -392,10 +392,13 @@ TEST(Sensitivity, EndsWithAnEdit) {
   World world(scene_of(kind, numbers, true), hand_at(numbers, 0));
   Sensitivity sensitivity(world, {"drag:cable"}, Start::settled);
   sensitivity.step(world, hand_at(numbers, 0.002));
-  EXPECT_EQ("", sensitivity.lost(0));
+  EXPECT_EQ("", sensitivity.lost(world, 0));
   ASSERT_TRUE(world.apply(edit::Unpin{"base"}).ok);
+  EXPECT_NE("", sensitivity.lost(world, 0));
   sensitivity.step(world, hand_at(numbers, 0.004));
-  EXPECT_NE("", sensitivity.lost(0));
+  EXPECT_NE("", sensitivity.lost(world, 0));
+  ASSERT_TRUE(world.apply(edit::Cut{cable_id(0), 5}).ok);
+  EXPECT_NE("", sensitivity.lost(world, 1));
 }
 
 }  // namespace

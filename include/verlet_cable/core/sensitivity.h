@@ -38,11 +38,11 @@ class Sensitivity {
 
   /// World::step of the world that it was made of; what is found of it is the same as of the step alone.
   StepResult step(World& world, const BoundaryInputs& inputs);
-  /// Why there are no derivatives of a cable any longer; empty if there are.
-  std::string lost(int cable) const;
+  /// Why there are no derivatives of a cable any longer, or none of the state that the world has now; empty if there are.
+  std::string lost(const World& world, int cable) const;
 
-  // Of the world as it is after the last step, one number a row and column, rows first. Cables by their index: [m], [m/s] of
-  // nodes, three rows each; [N] of segments; of an attachment: force [N] and torque [N m].
+  // Of cables that are not lost, one number a row and column, rows first. By their index: [m], [m/s] of nodes, three rows each;
+  // [N] of segments; of an attachment: force [N] and torque [N m].
   void read_positions(const World& world, int cable, double* to) const;
   void read_velocities(const World& world, int cable, double* to) const;
   void read_tension(const World& world, int cable, double* to) const;

@@ -1,6 +1,8 @@
 #include "sensitivity/cable_sensitivity.h"
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
 
 #include "sensitivity/column_algebra.h"
 
@@ -102,10 +104,8 @@ std::string CableSensitivity::settle(const State& state) {
       e.displacement.assign(n + 1, zero_vector<Column>());
       e.density.resize(n);
       for (int i = 0; i < n; ++i) e.density[i] = Column(densities[i]);
-      if (is_first) {
-        e.evaluate();
-        if (!e.factor()) return "its equilibrium is not unique";
-      }
+      e.evaluate();
+      if (is_first && !e.factor()) return "its equilibrium is not unique";
       const double size = e.solve(columns_.front().equations);
       if (!(size < allowed)) return "it is not in equilibrium; allowed: a cable at rest, as after settle()";
       if (!is_first || iteration == newton_iterations) break;
@@ -121,24 +121,42 @@ std::string CableSensitivity::settle(const State& state) {
       columns.tensions[i] = columns.last_tensions[i] = columns.multipliers[i] + e.force_along[i];
     }
     set_wrenches(state, e.residual(), targets, columns);
+    if (!is_finite(columns)) return "they are too large";
   }
   return {};
 }
 
-std::string CableSensitivity::begin_step(const State& state) {
+bool CableSensitivity::is_finite(const Columns& columns) {
+  const auto is_number = [](const Column& c) {
+    return std::all_of(std::begin(c.slope), std::end(c.slope), [](double slope) { return std::isfinite(slope); });
+  };
+  const auto are_numbers = [&](const ColumnVector& v) { return is_number(v.x) && is_number(v.y) && is_number(v.z); };
+  return std::all_of(columns.positions.begin(), columns.positions.end(), are_numbers) &&
+         std::all_of(columns.velocities.begin(), columns.velocities.end(), are_numbers) &&
+         std::all_of(columns.tensions.begin(), columns.tensions.end(), is_number) &&
+         std::all_of(columns.wrenches.begin(), columns.wrenches.end(),
+                     [&](const Wrench& wrench) { return are_numbers(wrench.force) && are_numbers(wrench.torque); });
+}
+
+std::string CableSensitivity::changed(const State& state) const {
   const SimulatedCable& cable = state.cables[cable_];
-  const CableState& now = cable.state;
+  const CableState &now = cable.state, &before = before_.state;
   const KinematicTargets& targets = state.cable_progress[cable_].targets;
   const auto is_same = [](const auto& a, const auto& b) { return a.attachment == b.attachment && a.node == b.node; };
   const auto are_same = [&](const auto& a, const auto& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same); };
-  if (cable.model != before_.model || scene_ != state.scene || now.positions != before_.state.positions ||
-      now.velocities != before_.state.velocities || now.rest_lengths != before_.state.rest_lengths ||
-      now.masses != before_.state.masses || !are_same(targets.nodes, targets_.nodes) ||
-      !are_same(targets.directions, targets_.directions))
-    return "it was edited or tuned, or the world was settled";
-  before_ = cable;
-  targets_ = targets;
-  if (now.unresolved.damped > 0) return "a substep damps motion that is too fast for the time step";
+  const bool is_as_it_was = cable.model == before_.model && scene_ == state.scene && now.positions == before.positions &&
+                            now.velocities == before.velocities && now.rest_lengths == before.rest_lengths &&
+                            now.masses == before.masses && are_same(targets.nodes, targets_.nodes) &&
+                            are_same(targets.directions, targets_.directions);
+  return is_as_it_was ? "" : "it was edited or tuned, or the world was settled";
+}
+
+std::string CableSensitivity::begin_step(const State& state) {
+  std::string problem = changed(state);
+  if (!problem.empty()) return problem;
+  before_ = state.cables[cable_];
+  targets_ = state.cable_progress[cable_].targets;
+  if (before_.state.unresolved.damped > 0) return "a substep damps motion that is too fast for the time step";
   return unsupported(cable_, state);
 }
 
@@ -146,6 +164,7 @@ std::string CableSensitivity::end_step(const State& state) {
   for (Columns& columns : columns_) {
     const std::string problem = follow(state, columns_.front(), columns);
     if (!problem.empty()) return problem;
+    if (!is_finite(columns)) return "they are too large";
   }
   before_ = state.cables[cable_];
   targets_ = state.cable_progress[cable_].targets;

@@ -23,6 +23,8 @@ class CableSensitivity {
   static std::string unsupported(int cable, const State& state);
   /// Takes the state for the equilibrium that depends on the constants. Returns why it is none, else nothing.
   std::string settle(const State& state);
+  /// Why derivatives are not those of the state: it is not as the last step has left it. Else nothing.
+  std::string changed(const State& state) const;
   /// Takes over the state before a step; returns why derivatives are lost, else nothing.
   std::string begin_step(const State& state);
   /// The state after it.
@@ -64,6 +66,7 @@ class CableSensitivity {
                             const Vector3& place) const;
   ColumnVector wanted_axis(const Columns& columns, const State& state, const DirectionTarget& target,
                            const Quaternion& orientation) const;
+  static bool is_finite(const Columns& columns);
   void take_values(const CableState& state, Columns& columns) const;
   void set_equations(const State& state, const Numbers& numbers, const KinematicTargets& targets, double h, bool is_static,
                      Columns& columns) const;

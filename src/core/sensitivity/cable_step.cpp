@@ -170,10 +170,8 @@ std::string CableSensitivity::find_solution(Columns& first, Columns& columns, co
           0.5 * ((before.positions[i + 1] - before.positions[i]).norm() + (after.positions[i + 1] - after.positions[i]).norm());
     e.density[i] = after.axial_multiplier[i] / length;
   }
-  if (&columns == &first) {
-    e.evaluate();
-    if (!e.factor()) return "the step's equations have no unique solution";
-  }
+  e.evaluate();
+  if (&columns == &first && !e.factor()) return "the step's equations have no unique solution";
   const double shortest = *std::min_element(before.rest_lengths.begin(), before.rest_lengths.end());
   const double tolerated = step_error + 100 * step.state.scene->tolerance * std::min(step.h, longest_tolerated);
   if (!(e.solve(first.equations) < tolerated * shortest)) return "something acts on it that derivatives do not know of";

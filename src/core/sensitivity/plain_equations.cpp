@@ -203,7 +203,6 @@ bool PlainEquations::factor() {
 }
 
 double PlainEquations::solve(PlainEquations& factored) {
-  evaluate();
   const int n = nodes() - 1, columns = columns_at_once + 1, rows = per_node * (n + 1);
   right_.assign(static_cast<std::size_t>(rows) * columns, 0.0);
   const auto put = [&](int row, const Column& lacking) {

@@ -62,9 +62,9 @@ class PlainEquations {
   void evaluate();
   /// The matrix, from the numbers of the present solution. False if it is singular.
   bool factor();
-  /// Adds the derivatives that are found to those of displacements and densities; forces are then those of the solution, but in
-  /// statics. Returns the largest correction that the numbers would need [m]; they stay. `factored`: has the matrix; equations
-  /// that differ in the derivatives of their constants only.
+  /// After `evaluate`. Adds the derivatives that are found to those of displacements and densities; forces are then those of the
+  /// solution, but in statics. Returns the largest correction that the numbers would need [m]; they stay. `factored`: has the
+  /// matrix; equations that differ in the derivatives of their constants only.
   double solve(PlainEquations& factored);
   /// [m], [N/m] By which the numbers are to be corrected: of the last `solve`.
   const std::vector<Vector3>& correction() const { return correction_; }

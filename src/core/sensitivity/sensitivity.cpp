@@ -105,8 +105,9 @@ std::string text_of(const std::vector<std::string>& lines) {
 struct Sensitivity::Implementation {
   std::vector<std::string> parameters;
   std::vector<SensitivityColumn> columns;
-  std::vector<CableSensitivity> cables;  ///< those that depend on a parameter
-  std::map<int, std::string> lost;       ///< by cable: why
+  std::vector<CableSensitivity> cables;                   ///< those that depend on a parameter
+  std::map<int, std::string> lost;                        ///< by cable: why
+  std::vector<std::shared_ptr<const CableModel>> models;  ///< of all cables, at the start
 
   /// nullptr: it does not depend on any.
   const CableSensitivity* find(int cable) const {
@@ -136,6 +137,7 @@ Sensitivity::Sensitivity(const World& world, const std::vector<std::string>& par
   const State& state = world.implementation_->state;
   Implementation& own = *implementation_;
   own.parameters = parameters;
+  for (const SimulatedCable& cable : state.cables) own.models.push_back(cable.model);
   ParameterReader reader(state, start == Start::settled);
   for (const std::string& parameter : parameters) reader.read(parameter, own.columns);
   if (parameters.empty()) reader.errors.push_back(std::string("parameters: none; allowed: ") + allowed_parameters);
@@ -199,9 +201,15 @@ StepResult Sensitivity::step(World& world, const BoundaryInputs& inputs) {
   return result;
 }
 
-std::string Sensitivity::lost(int cable) const {
-  const auto found = implementation_->lost.find(cable);
-  return found == implementation_->lost.end() ? std::string() : found->second;
+std::string Sensitivity::lost(const World& world, int cable) const {
+  const Implementation& own = *implementation_;
+  const State& state = world.implementation_->state;
+  const auto found = own.lost.find(cable);
+  if (found != own.lost.end()) return found->second;
+  const bool is_known = cable < static_cast<int>(own.models.size()) && state.cables[cable].model == own.models[cable];
+  if (!is_known) return "it was edited, or came later";
+  const CableSensitivity* const followed = own.find(cable);
+  return followed != nullptr ? followed->changed(state) : std::string();
 }
 
 namespace {

@@ -72,7 +72,7 @@ Output read_output(const World& world, const Sensitivity& sensitivity, const std
     else
       output.shape = {state.nodes(), 3};
   }
-  if (const std::string lost = sensitivity.lost(output.cable); !lost.empty())
+  if (const std::string lost = sensitivity.lost(world, output.cable); !lost.empty())
     throw py::value_error("outputs: " + quoted(text) + " has no derivatives any longer, " + lost +
                           "; allowed: cables of which derivatives are followed");
   std::size_t size = static_cast<std::size_t>(sensitivity.columns());
