@@ -55,11 +55,10 @@ std::string CableSensitivity::clean(const Numbers& numbers, const std::vector<Co
       if (i > 0) lacking[i] = lacking[i] - force[i - 1];
     }
   };
-  constexpr int per_node = 4, density_place = 3;
   BandMatrix matrix;
-  matrix.assign(per_node * (n + 1), 2 * per_node + 2);
+  matrix.assign(unknowns_a_node * (n + 1), coupling_reach);
   const auto add = [&](int row, int column, double value) {
-    for (int k = 0; k < 3; ++k) matrix.at(per_node * row + k, per_node * column + k) += value;
+    for (int k = 0; k < 3; ++k) matrix.at(unknowns_a_node * row + k, unknowns_a_node * column + k) += value;
   };
   const auto add_bend = [&](int row, int i, double factor) {
     const PlainJoint<Column>& joint = e.joints[i];
@@ -77,12 +76,12 @@ std::string CableSensitivity::clean(const Numbers& numbers, const std::vector<Co
     add(i + 1, i, s);
     add(i + 1, i + 1, -s);
     const Vector3 d = values_of(segments[i]);
-    const int row = per_node * i + density_place;
+    const int row = unknowns_a_node * i + density_place;
     for (int k = 0; k < 3; ++k) {
-      matrix.at(per_node * i + k, row) += d[k];
-      matrix.at(per_node * (i + 1) + k, row) -= d[k];
-      matrix.at(row, per_node * i + k) += d[k];
-      matrix.at(row, per_node * (i + 1) + k) -= d[k];
+      matrix.at(unknowns_a_node * i + k, row) += d[k];
+      matrix.at(unknowns_a_node * (i + 1) + k, row) -= d[k];
+      matrix.at(row, unknowns_a_node * i + k) += d[k];
+      matrix.at(row, unknowns_a_node * (i + 1) + k) -= d[k];
     }
     matrix.at(row, row) += compliance[i].value;
     if (i == 0) continue;
@@ -96,10 +95,10 @@ std::string CableSensitivity::clean(const Numbers& numbers, const std::vector<Co
     matrix.at(row, row) = 1;
   };
   for (int i = 0; i <= n; ++i)
-    for (int k = 0; k < 3 && e.movable[i] == 0; ++k) fix(per_node * i + k);
+    for (int k = 0; k < 3 && e.movable[i] == 0; ++k) fix(unknowns_a_node * i + k);
   for (int i = 0; i < n; ++i)
-    if (e.fixed_density[i] != 0) fix(per_node * i + density_place);
-  fix(per_node * n + density_place);
+    if (e.fixed_density[i] != 0) fix(unknowns_a_node * i + density_place);
+  fix(unknowns_a_node * n + density_place);
   if (!matrix.factor()) return "the equations of its numerical damping have no unique solution";
   constexpr int width = columns_at_once + 1;
   std::vector<double> right;
@@ -113,11 +112,11 @@ std::string CableSensitivity::clean(const Numbers& numbers, const std::vector<Co
     };
     for (int i = 0; i <= n; ++i) {
       if (e.movable[i] != 0) {
-        put(per_node * i, lacking[i].x);
-        put(per_node * i + 1, lacking[i].y);
-        put(per_node * i + 2, lacking[i].z);
+        put(unknowns_a_node * i, lacking[i].x);
+        put(unknowns_a_node * i + 1, lacking[i].y);
+        put(unknowns_a_node * i + 2, lacking[i].z);
       }
-      if (i < n && e.fixed_density[i] == 0) put(per_node * i + density_place, lacking_rows[i]);
+      if (i < n && e.fixed_density[i] == 0) put(unknowns_a_node * i + density_place, lacking_rows[i]);
     }
     matrix.solve(right.data(), width);
     const auto take = [&](int row, Column& to) {
@@ -128,10 +127,10 @@ std::string CableSensitivity::clean(const Numbers& numbers, const std::vector<Co
       for (int k = 0; k < columns_at_once; ++k) to.slope[k] += right[row * width + k];
     };
     for (int i = 0; i <= n; ++i) {
-      take(per_node * i, resolved[i].x);
-      take(per_node * i + 1, resolved[i].y);
-      take(per_node * i + 2, resolved[i].z);
-      if (i < n) take(per_node * i + density_place, multiplier[i]);
+      take(unknowns_a_node * i, resolved[i].x);
+      take(unknowns_a_node * i + 1, resolved[i].y);
+      take(unknowns_a_node * i + 2, resolved[i].z);
+      if (i < n) take(unknowns_a_node * i + density_place, multiplier[i]);
     }
   }
   evaluate();

@@ -7,12 +7,6 @@ namespace verlet_cable {
 
 namespace {
 
-/// Unknowns a node: its place, and the density of the segment after it.
-constexpr int per_node = 4;
-constexpr int density_place = 3;
-/// A joint couples a node with the one after the next.
-constexpr int reach = 2 * per_node + 2;
-
 template <class To>
 VectorOf<To> constants_of(const ColumnVector& v) {
   return {To(v.x.value), To(v.y.value), To(v.z.value)};
@@ -54,7 +48,7 @@ void vary(int from, int to, VectorOf<Dual<n>>& v) {
 template <std::size_t n>
 void add_load(int node, double sign, const VectorOf<Dual<static_cast<int>(n)>>& load, const std::array<int, n>& columns,
               BandMatrix& matrix) {
-  int row = per_node * node;
+  int row = unknowns_a_node * node;
   for (const Dual<static_cast<int>(n)>* component : {&load.x, &load.y, &load.z}) {
     for (std::size_t k = 0; k < n; ++k) matrix.at(row, columns[k]) += sign * component->slope[k];
     ++row;
@@ -121,12 +115,12 @@ void PlainEquations::evaluate() {
 
 void PlainEquations::assemble() {
   const int n = nodes() - 1;
-  matrix_.assign(per_node * (n + 1), reach);
+  matrix_.assign(unknowns_a_node * (n + 1), coupling_reach);
   for (int i = 0; i <= n; ++i)
-    for (int k = 0; k < 3; ++k) matrix_.at(per_node * i + k, per_node * i + k) = is_static ? 0 : -inertia[i].value;
+    for (int k = 0; k < 3; ++k) matrix_.at(unknowns_a_node * i + k, unknowns_a_node * i + k) = is_static ? 0 : -inertia[i].value;
   for (int i = 0; i < n; ++i) {
     using Real = Dual<7>;
-    const int c = per_node * i;
+    const int c = unknowns_a_node * i;
     const std::array<int, 7> columns{c, c + 1, c + 2, c + 4, c + 5, c + 6, c + density_place};
     VectorOf<Real> from = constants_of<Real>(start[i]), change = constants_of<Real>(change_of(i));
     vary(0, 3, is_static ? from : change);
@@ -139,7 +133,7 @@ void PlainEquations::assemble() {
   for (int i = 1; i < n; ++i) {
     if (joints[i].stiffness.value == 0 && joints[i].damping.value == 0) continue;
     using Real = Dual<9>;
-    const int c = per_node * (i - 1);
+    const int c = unknowns_a_node * (i - 1);
     const std::array<int, 9> columns{c, c + 1, c + 2, c + 4, c + 5, c + 6, c + 8, c + 9, c + 10};
     VectorOf<Real> before = constants_of<Real>(is_static ? start[i - 1] : change_of(i - 1));
     VectorOf<Real> after = constants_of<Real>(is_static ? start[i] : change_of(i));
@@ -158,7 +152,7 @@ void PlainEquations::assemble() {
   }
   for (const PlainClamp<Column>& clamp : clamps) {
     using Real = Dual<6>;
-    const int i = clamp.segment, c = per_node * i;
+    const int i = clamp.segment, c = unknowns_a_node * i;
     const std::array<int, 6> columns{c, c + 1, c + 2, c + 4, c + 5, c + 6};
     VectorOf<Real> from = constants_of<Real>(start[i]), change = constants_of<Real>(change_of(i));
     vary(0, 3, is_static ? from : change);
@@ -173,10 +167,10 @@ void PlainEquations::assemble() {
   };
   for (int i = 0; i <= n; ++i)
     if (movable[i] == 0)
-      for (int k = 0; k < 3; ++k) fix(per_node * i + k);
+      for (int k = 0; k < 3; ++k) fix(unknowns_a_node * i + k);
   for (int i = 0; i < n; ++i)
-    if (fixed_density[i] != 0) fix(per_node * i + density_place);
-  fix(per_node * n + density_place);  // there is no segment after the last node
+    if (fixed_density[i] != 0) fix(unknowns_a_node * i + density_place);
+  fix(unknowns_a_node * n + density_place);  // there is no segment after the last node
 }
 
 bool PlainEquations::factor() {
@@ -193,9 +187,9 @@ bool PlainEquations::factor() {
     loads[i] -= (joint.inverse_before.value + joint.inverse_after.value) * moment;
     loads[i + 1] += joint.inverse_after.value * moment;
   }
-  turned_.load.assign(per_node * (n + 1), 0.0);
+  turned_.load.assign(unknowns_a_node * (n + 1), 0.0);
   for (int i = 0; i <= n; ++i)
-    for (int k = 0; k < 3; ++k) turned_.load[per_node * i + k] = movable[i] != 0 ? loads[i][k] : 0;
+    for (int k = 0; k < 3; ++k) turned_.load[unknowns_a_node * i + k] = movable[i] != 0 ? loads[i][k] : 0;
   turned_.solution = turned_.load;
   turned_.square = turned_square_.value;
   matrix_.solve(turned_.solution.data(), 1);
@@ -203,7 +197,7 @@ bool PlainEquations::factor() {
 }
 
 double PlainEquations::solve(PlainEquations& factored) {
-  const int n = nodes() - 1, columns = columns_at_once + 1, rows = per_node * (n + 1);
+  const int n = nodes() - 1, columns = columns_at_once + 1, rows = unknowns_a_node * (n + 1);
   right_.assign(static_cast<std::size_t>(rows) * columns, 0.0);
   const auto put = [&](int row, const Column& lacking) {
     double* to = right_.data() + static_cast<std::ptrdiff_t>(row) * columns;
@@ -212,11 +206,11 @@ double PlainEquations::solve(PlainEquations& factored) {
   };
   for (int i = 0; i <= n; ++i) {
     if (movable[i] != 0) {
-      put(per_node * i, residual_[i].x);
-      put(per_node * i + 1, residual_[i].y);
-      put(per_node * i + 2, residual_[i].z);
+      put(unknowns_a_node * i, residual_[i].x);
+      put(unknowns_a_node * i + 1, residual_[i].y);
+      put(unknowns_a_node * i + 2, residual_[i].z);
     }
-    if (i < n && fixed_density[i] == 0) put(per_node * i + density_place, gap_[i]);
+    if (i < n && fixed_density[i] == 0) put(unknowns_a_node * i + density_place, gap_[i]);
   }
   factored.matrix_.solve(right_.data(), columns);
   const Turned& turned = factored.turned_;
@@ -240,10 +234,10 @@ double PlainEquations::solve(PlainEquations& factored) {
   double largest = 0;
   for (int i = 0; i <= n; ++i) {
     ColumnVector& u = displacement[i];
-    correction_[i] = {take(per_node * i, u.x), take(per_node * i + 1, u.y), take(per_node * i + 2, u.z)};
+    correction_[i] = {take(unknowns_a_node * i, u.x), take(unknowns_a_node * i + 1, u.y), take(unknowns_a_node * i + 2, u.z)};
     const double size = correction_[i].norm();
     if (!(size <= largest)) largest = size;  // what is no number is the largest
-    if (i < n) density_correction_[i] = take(per_node * i + density_place, density[i]);
+    if (i < n) density_correction_[i] = take(unknowns_a_node * i + density_place, density[i]);
   }
   if (!is_static) evaluate();
   return largest;

@@ -26,6 +26,12 @@ inline ColumnVector constant(const Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
 
+/// Unknowns of a node: its place, and the density of the segment after it.
+constexpr int unknowns_a_node = 4;
+constexpr int density_place = 3;
+/// By so many unknowns what a joint couples may be apart: a node and the one after the next.
+constexpr int coupling_reach = 2 * unknowns_a_node + 2;
+
 /// How much of what turns with the material is not damped, see BendDamping: none, some or all of it.
 enum class TurnedShare { none, some, all };
 

@@ -190,7 +190,8 @@ void add_sensitivity_methods(py::class_<PythonWorld>& world) {
           "depend on them (not for 'length' and 'pose', with which it would not go together). With `parameters` None, they are "
           "forgotten. They end, and sensitivity() says why, when a cable touches something, has to be stepped in several "
           "substeps, is edited or tuned, or jumps with its frame. Copies and saved worlds do not have them. Trajectories are the "
-          "same with and without.\n\nRaises ValueError as sensitivity().");
+          "same with and without; for each eight columns, a step takes about as long as twenty without.\n\nRaises ValueError as "
+          "sensitivity().");
 }
 
 }  // namespace verlet_cable
