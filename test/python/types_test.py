@@ -28,6 +28,8 @@ world = World(scene, {'hand': ([0.0, 1.0], np.zeros((2, 7)))})
 world.set_frame('hand', [0, 0, 1], (0, 0, 0, 1))
 status: str = world.step(10)
 height: float = float(world.positions('hose')[-1, 2]) + world.energy()['total']
+world.track_sensitivity(['drag:hose', 'gravity'], start='given')
+by_drag: float = world.sensitivity('positions:hose')[-1, 2, 0] + world.sensitivity(['tension:hose'], 'drag:hose')['tension:hose'].max()
 name, node = world.pin('hose', arc_length=0.5, frame_id='hand', clamp=True)
 piece: str = world.cut(point=(0, 0, 1)).second
 world.set_obstacle('floor', type='plane', pose=[0, 0, -1, 0, 0, 0])

@@ -300,6 +300,7 @@ class World {
 
  private:
   friend struct WorldInspector;  // tests
+  friend class Sensitivity;
   friend class WorldStepper;
   struct Implementation;
   std::unique_ptr<Implementation> implementation_;

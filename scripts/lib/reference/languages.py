@@ -4,7 +4,7 @@ import re
 from reference.markdown import fence, generated
 
 GROUPS = {
-    'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/types.h'],
+    'Worlds': ['core/world.h', 'core/edit.h', 'core/world_stepper.h', 'core/sensitivity.h', 'core/types.h'],
     'What is simulated': [
         'core/cable.h', 'core/cable_materials.h', 'core/body.h', 'core/body_id.h', 'core/net.h', 'core/guide.h', 'core/ledger.h', 'core/load.h',
         'core/winch.h', 'core/contact.h', 'core/obstacle.h', 'core/surface_point.h'],

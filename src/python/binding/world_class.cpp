@@ -18,6 +18,7 @@
 #include "binding/pickle_protocol.h"
 #include "binding/run_steps.h"
 #include "binding/scene_class.h"
+#include "binding/sensitivity_methods.h"
 #include "binding/text_arguments.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/number_text.h"
@@ -36,12 +37,14 @@ class OwnWorld : public PythonWorld {
   EventRecord& events() override { return events_; }
   bool& busy() override { return busy_; }
   const char* used() const override { return "world"; }
+  std::optional<Sensitivity>* tracked() override { return &tracked_; }
 
  private:
   PythonScene scene_;
   DrivenWorld driven_;
   EventRecord events_;
   bool busy_ = false;
+  std::optional<Sensitivity> tracked_;
 };
 
 std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& motion, const py::object& loads) {
@@ -78,11 +81,13 @@ const char* step(PythonWorld& world, std::int64_t steps) {
   const InUse in_use(world.busy(), world.used());
   DrivenWorld& driven = world.driven();
   if (steps > 0) driven.require_placed_frames();
+  std::optional<Sensitivity>* const tracked = world.tracked();
+  const bool follows = tracked != nullptr && tracked->has_value();
   StepResult::Status worst = StepResult::Status::ok;
   world.has_changed();
   run_steps(steps, [&](std::int64_t some) {
     for (std::int64_t i = 0; i < some; ++i) {
-      const StepResult result = driven.step();
+      const StepResult result = follows ? (*tracked)->step(driven.world(), driven.next_inputs()) : driven.step();
       worst = std::max(worst, result.status);
       world.events().observe(driven.world(), result, driven.held_back(), driven.refused_loads());
     }
@@ -264,6 +269,7 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
           "Hash (16 hexadecimal digits) of everything in the world on which its future depends, as in the summary of cable_sim. "
           "It covers neither the motion nor poses that set_frame has set for the next step.");
   add_names(world);
+  add_sensitivity_methods(world);
   return world;
 }
 

@@ -3,10 +3,12 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
+#include <optional>
 
 #include "binding/scene_class.h"
 #include "simulation/driven_world.h"
 #include "simulation/event_record.h"
+#include "verlet_cable/core/sensitivity.h"
 
 namespace verlet_cable {
 
@@ -24,6 +26,9 @@ class PythonWorld {
   virtual const char* used() const = 0;
   /// To be called after each change but steps of a batch.
   virtual void has_changed() {}
+
+  /// Derivatives that its steps carry along; nullptr where they cannot.
+  virtual std::optional<Sensitivity>* tracked() { return nullptr; }
 
   /// For reading. Throws where another thread uses it.
   const World& world();
