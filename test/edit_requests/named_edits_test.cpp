@@ -133,9 +133,7 @@ TEST(Tuning, WhatIsInfiniteStaysSo) {
 
 /// What was asked for is named, and not only what it contradicts.
 TEST(Tuning, ConflictsNameWhatWasTuned) {
-  SceneDesc scene;
-  scene.materials.resize(1);
-  scene.materials[0].name = "rope";
+  SceneDesc scene = straight_cables({{"cable", {0, 0, 0}}});
   scene.materials[0].material.bending_stiffness = {0.1, 0.1};
   scene.materials[0].material.yield_curvature = 3;
   EXPECT_TRUE(tuning_errors(scene, {{"rope_bending_stiffness", 0.2}}).empty());
