@@ -75,7 +75,7 @@ def test_every_method_of_world_is_there_for_one_of_a_batch(scene):
         assert f'As World.{name}, of one of the worlds' in getattr(Batch, name).__doc__
     own = {name for name, _ in inspect.getmembers(World) if not name.startswith('_')}
     assert own - set(dir(Batch)) == {'load', 'scene', 'cable_names', 'net_names', 'particle_names', 'body_names', 'guide_names',
-                                     'attachment_names', 'obstacle_names', 'frame_names'}
+                                     'attachment_names', 'obstacle_names', 'frame_names', 'sensitivity', 'track_sensitivity'}
 
 
 def test_worlds_are_a_sequence(scene):

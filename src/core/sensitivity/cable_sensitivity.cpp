@@ -11,7 +11,7 @@ namespace verlet_cable {
 namespace {
 
 /// [segment lengths] An equilibrium is no further from where the cable is.
-constexpr double static_error = 1e-4;
+constexpr double static_error = 1e-5;
 /// [m/s] What moves faster is in no equilibrium.
 constexpr double at_rest = 1e-3;
 constexpr int newton_iterations = 4;
