@@ -44,8 +44,8 @@ std::string CableSensitivity::unsupported(int index, const State& state) {
   const MaterialDesc& material = cable.model->material;
   const bool passes_roll_on = material.torsional_stiffness > 0 || material.torsional_damping > 0;
   if (!cable.state.directors.empty())
-    return "it is a whole rod (as stiff about one axis as about the other it is not, or it is curved or twisted unloaded, or "
-           "remembers how it was bent)";
+    return "it is a whole rod: it bends differently about its two axes, is curved or twisted unloaded, or remembers how it was "
+           "bent";
   if (!cable.state.section_material.empty()) return "it has sections";
   if (!cable.state.flexible_fraction.empty()) return "it has stiff ends";
   if (passes_roll_on && !progress.spans.empty()) return "it is twisted between clamps";
