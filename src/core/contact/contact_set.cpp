@@ -411,7 +411,7 @@ void ContactSet::find_obstacle(const SimulatedCable& cable, int index, const Con
   if (cuts)
     bound_friction_at_corners(state, first_touch, feet_, touches_, pressed_);
   else
-    bound_friction_of_nodes(state, first_touch, touches_);
+    bound_friction_of_nodes(state, first_touch, flat, touches_);
   if (is_body) {
     // What leans may do work on what gives way.
     const double friction = *moving.obstacle->friction;

@@ -40,14 +40,16 @@ double friction_of_turn(double friction, double sine) {
 
 /// Turned around an obstacle by an angle, tension grows by up to exp(friction * angle) along the arc (Euler): between T and T'
 /// along directions t and t' the obstacle's force on the cable is T t - T' t'. Without friction it halves the angle, to where it
-/// may lean from the normal: a node or segment at a sharp edge stands for all directions that the edge can push in.
-FrictionBound bound_of_arc(double friction, const Vector3& before, const Vector3& after, const Vector3& normal) {
+/// may lean from the normal: a node or segment at a sharp edge stands for all directions that the edge can push in. What is
+/// `flat` pushes along its normal alone; it would work without end on a cable that is drawn through it.
+FrictionBound bound_of_arc(double friction, const Vector3& before, const Vector3& after, const Vector3& normal, bool flat) {
   const double rise = normal.dot(before), fall = -normal.dot(after);
   if (!(rise > 0) && !(fall > 0)) return {friction};
   const double before_length = before.norm(), after_length = after.norm();
   const double sine = 0.5 * (rise / before_length + fall / after_length);
   if (!(sine > 0)) return {friction};
   if (sine * sine < small_square) return {friction_of_turn(friction, sine)};
+  if (flat) return {friction};
   const Vector3 sum = before / before_length + after / after_length;
   const double across = normal.dot(sum);
   const Vector3 along = sum - across * normal;
@@ -67,12 +69,12 @@ void bound(const FrictionBound& bound, Touch& touch) {
 
 }  // namespace
 
-void bound_friction_of_nodes(const CableState& state, std::size_t first, std::vector<Touch>& touches) {
+void bound_friction_of_nodes(const CableState& state, std::size_t first, bool flat, std::vector<Touch>& touches) {
   const std::vector<Vector3>& x = state.positions;
   for (std::size_t k = first; k < touches.size(); ++k) {
     const auto node = static_cast<std::size_t>(first_node_of(touches[k].other_key));
     if (node == 0 || node + 1 == x.size()) continue;
-    bound(bound_of_arc(touches[k].friction, x[node] - x[node - 1], x[node + 1] - x[node], touches[k].normal), touches[k]);
+    bound(bound_of_arc(touches[k].friction, x[node] - x[node - 1], x[node + 1] - x[node], touches[k].normal, flat), touches[k]);
   }
 }
 
@@ -82,7 +84,7 @@ void bound_friction_at_corners(const CableState& state, std::size_t first, const
   const auto last_node = [&](std::size_t k) { return last_node_of(touches[k].other_key); };
   const auto direction = [&](int i) { return segment_direction(state, i); };
   const auto bound_turn = [&](Touch& touch, const Vector3& before, const Vector3& behind) {
-    bound(bound_of_arc(touch.friction, before, behind, touch.normal), touch);
+    bound(bound_of_arc(touch.friction, before, behind, touch.normal, false), touch);
   };
   const auto meet = [&](std::size_t k, std::size_t next) { return first_node(next) <= last_node(k); };
   const auto are_one_corner = [&](std::size_t k, std::size_t next) {

@@ -8,7 +8,8 @@
 namespace verlet_cable {
 
 /// Bounds the friction of nodes that touch, from the `first` touch on, of one cable and obstacle, by the turn of the cable there.
-void bound_friction_of_nodes(const CableState& state, std::size_t first, std::vector<Touch>& touches);
+/// `flat`: the obstacle is a plane, which has no edge to lean on where a cable is held behind it.
+void bound_friction_of_nodes(const CableState& state, std::size_t first, bool flat, std::vector<Touch>& touches);
 
 /// The same where segments touch, too: from the cable's direction before what touches to that behind. What touches at one corner
 /// has the whole turn in common, and forces of one direction; other neighbours at a node share its turn in the ratio of their
