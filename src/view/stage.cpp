@@ -84,7 +84,8 @@ Ray ray_of(RTCRayN* rays, unsigned count, unsigned i, const Vector3& origin) {
           Vector3(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// What Embree asks of segments of tubes. Its own round curves are in a tree of oriented boxes, as for hair, where rays take longer.
+/// What Embree asks of segments of tubes. Its own round curves are in a tree of oriented boxes, as for hair, where rays take
+/// longer.
 struct Tubes {
   const Stage::Implementation& stage;
 
