@@ -1,8 +1,8 @@
 #include "closed_forms.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <utility>
 #include <variant>
 
 namespace verlet_cable::view {
@@ -22,44 +22,39 @@ class First {
   std::optional<Meeting> found_;
 };
 
-/// Where |offset + t direction| is `radius`, from the place where it is smallest: so nothing cancels from far away. None where it
-/// is nowhere so small.
-std::optional<std::pair<double, double>> reach_radius(const Vector3& offset, const Vector3& direction, double radius) {
+/// The t from which on, and up to which, something is near.
+struct Span {
+  double first, last;
+};
+
+/// Where |offset + t direction| is `radius`, from the place where it is smallest: so nothing cancels from far away. False where
+/// it is nowhere so small. Most rays are tried here, many times each: it is worth its place in its callers.
+[[gnu::always_inline]] inline bool reach_radius(const Vector3& offset, const Vector3& direction, double radius, Span& span) {
   const double dd = direction.squaredNorm();
-  if (!(dd > 0)) return {};
   const double middle = -offset.dot(direction) / dd;
   const double rest = radius * radius - (offset + middle * direction).squaredNorm();
-  if (!(rest >= 0)) return {};
+  if (!(rest >= 0)) return false;  // also without a direction
   const double half = std::sqrt(rest / dd);
-  return std::pair{middle - half, middle + half};
+  span = {middle - half, middle + half};
+  return true;
 }
 
 /// `counts(point)`: whether a point of the sphere is part of the surface.
 template <class Counts>
 void meet_sphere(const Vector3& center, double radius, const Ray& ray, const Counts& counts, First& first) {
-  const auto meetings = reach_radius(ray.origin - center, ray.direction, radius);
-  if (!meetings) return;
-  for (const double t : {meetings->first, meetings->second})
+  Span span;
+  if (!reach_radius(ray.origin - center, ray.direction, radius, span)) return;
+  for (const double t : {span.first, span.last})
     if (first.wants(t) && counts(ray.at(t))) first.add(t, (ray.at(t) - center) / radius);
 }
 
 /// The side of a cylinder around z through the origin.
 void meet_side(double radius, double half_length, const Ray& ray, First& first) {
   const auto flat = [](const Vector3& v) { return Vector3(v.x(), v.y(), 0); };
-  const auto meetings = reach_radius(flat(ray.origin), flat(ray.direction), radius);
-  if (!meetings) return;
-  for (const double t : {meetings->first, meetings->second})
+  Span span;
+  if (!reach_radius(flat(ray.origin), flat(ray.direction), radius, span)) return;
+  for (const double t : {span.first, span.last})
     if (first.wants(t) && std::abs(ray.at(t).z()) <= half_length) first.add(t, flat(ray.at(t)) / radius);
-}
-
-std::optional<Meeting> meet_capsule(double radius, double half_length, const Ray& ray, double lowest) {
-  First first(lowest);
-  meet_side(radius, half_length, ray, first);
-  for (const double end : {-half_length, half_length}) {
-    const auto is_beyond = [end](const Vector3& point) { return end < 0 ? point.z() <= end : point.z() >= end; };
-    meet_sphere({0, 0, end}, radius, ray, is_beyond, first);
-  }
-  return first.found();
 }
 
 struct MeetShape {
@@ -78,7 +73,8 @@ struct MeetShape {
     return first.found();
   }
   std::optional<Meeting> operator()(const CapsuleShape& capsule) const {
-    return meet_capsule(capsule.radius, 0.5 * capsule.length, ray, lowest);
+    const Vector3 half(0, 0, 0.5 * capsule.length);
+    return RoundLine(-half, half, capsule.radius).meet(ray, lowest);
   }
   std::optional<Meeting> operator()(const CylinderShape& cylinder) const {
     First first(lowest);
@@ -119,26 +115,52 @@ std::optional<Meeting> meet(const Shape& shape, const Ray& ray, double lowest) {
   return std::visit(MeetShape{ray, lowest}, shape);
 }
 
-std::optional<Meeting> meet_tube(const Vector3& start, const Vector3& end, double radius, const Ray& ray, double lowest) {
-  const Vector3 axis = end - start;
-  const double length = axis.norm();
-  First first(lowest);
-  if (length > 0) {
-    const Vector3 along = axis / length, offset = ray.origin - start;
-    const auto across = [&](const Vector3& v) -> Vector3 { return v - v.dot(along) * along; };
-    if (const auto meetings = reach_radius(across(offset), across(ray.direction), radius)) {
-      for (const double t : {meetings->first, meetings->second}) {
-        const Vector3 point = offset + t * ray.direction;
-        const double place = point.dot(along);
-        if (first.wants(t) && place >= 0 && place <= length) first.add(t, (point - place * along) / radius);
-      }
+RoundLine::RoundLine(const Vector3& start, const Vector3& end, double radius)
+    : start_(start), axis_(end - start), inverse_square_(0), radius_(radius) {
+  const double square = axis_.squaredNorm();
+  if (square > 0) inverse_square_ = 1 / square;
+}
+
+std::optional<double> RoundLine::first_of_near(const Ray& ray, double lowest) const {
+  const Vector3 offset = ray.origin - start_;
+  const double slope = ray.direction.dot(axis_) * inverse_square_, place = offset.dot(axis_) * inverse_square_;
+  const Vector3 sideways = ray.direction - slope * axis_;
+  Span span;
+  if (sideways.squaredNorm() > 0) {
+    if (!reach_radius(offset - place * axis_, sideways, radius_, span)) return {};  // past the endless cylinder, in which all is
+    if (span.first >= lowest) {
+      // Into that it comes beside the line, or before one of its ends, by whose ball alone it can come further then.
+      const double part = place + span.first * slope;
+      if (part >= 0 && part <= 1) return span.first;
+      const bool meets = reach_radius(part < 0 ? offset : Vector3(offset - axis_), ray.direction, radius_, span);
+      return meets && span.first >= lowest ? std::optional<double>(span.first) : std::nullopt;
     }
+    if (!(span.last >= lowest)) return {};
   }
-  meet_sphere(
-      start, radius, ray, [&](const Vector3& point) { return (point - start).dot(axis) <= 0; }, first);
-  meet_sphere(
-      end, radius, ray, [&](const Vector3& point) { return (point - end).dot(axis) >= 0; }, first);
-  return first.found();
+  return first_of_all(ray, lowest);
+}
+
+/// Also from the inside, and along the axis.
+std::optional<double> RoundLine::first_of_all(const Ray& ray, double lowest) const {
+  std::optional<double> found;
+  const auto add = [&](const Span& span, const auto& counts) {
+    for (const double t : {span.first, span.last})
+      if (t >= lowest && (!found || t < *found) && counts(part(ray.at(t)))) found = t;
+  };
+  const Vector3 offset = ray.origin - start_;
+  const auto across = [&](const Vector3& v) -> Vector3 { return v - v.dot(axis_) * inverse_square_ * axis_; };
+  Span span;
+  if (reach_radius(across(offset), across(ray.direction), radius_, span)) add(span, [](double at) { return at >= 0 && at <= 1; });
+  if (reach_radius(offset, ray.direction, radius_, span)) add(span, [](double at) { return at <= 0; });
+  if (reach_radius(offset - axis_, ray.direction, radius_, span)) add(span, [](double at) { return at >= 1; });
+  return found;
+}
+
+std::optional<Meeting> RoundLine::meet(const Ray& ray, double lowest) const {
+  const std::optional<double> t = first(ray, lowest);
+  if (!t) return {};
+  const Vector3 point = ray.at(*t);
+  return Meeting{*t, (point - start_ - std::clamp(part(point), 0.0, 1.0) * axis_) / radius_};
 }
 
 std::optional<Meeting> meet_plane_of(const Vector3& a, const Vector3& b, const Vector3& c, const Ray& ray) {

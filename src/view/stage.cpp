@@ -66,34 +66,55 @@ Sighting part_sighting(const PlacedPart& part, const Ray& ray, const Meeting& me
 Sighting tube_sighting(const TubeSegment& segment, const Ray& ray, double lowest, double t, double footprint) {
   // Grazing rays that miss by rounding meet it where Embree has it.
   const Meeting otherwise{t, -ray.direction.normalized()};
-  const Meeting meeting = meet_tube(segment.start, segment.end, segment.radius, ray, lowest).value_or(otherwise);
+  const Meeting meeting = segment.line.meet(ray, lowest).value_or(otherwise);
   Sighting seen{segment.thing, meeting.t, meeting.normal, segment.paint, 0};
   if (footprint > 0 && segment.is_striped) {
-    const Vector3 axis = segment.end - segment.start;
-    const double along = (ray.at(meeting.t) - segment.start).dot(axis), part = along / std::max(axis.squaredNorm(), 1e-300);
-    const double roll = segment.roll_at_start + std::clamp(part, 0.0, 1.0) * (segment.roll_at_end - segment.roll_at_start);
+    const double part = std::clamp(segment.line.part(ray.at(meeting.t)), 0.0, 1.0);
+    const double roll = segment.roll_at_start + part * (segment.roll_at_end - segment.roll_at_start);
     const double angle = std::atan2(meeting.normal.dot(segment.third), meeting.normal.dot(segment.second)) - roll;
     seen.second_color =
-        stripes_at(segment.paint->look, angle, footprint * meeting.t * aslant(meeting.normal, ray) / segment.radius);
+        stripes_at(segment.paint->look, angle, footprint * meeting.t * aslant(meeting.normal, ray) / segment.line.radius());
   }
   return seen;
 }
 
-/// What Embree asks of a solid, in its coordinates.
-struct SolidsOf {
+/// One of the rays that Embree has from the stage's origin on, in the fixed frame.
+Ray ray_of(RTCRayN* rays, unsigned count, unsigned i, const Vector3& origin) {
+  return {Vector3(RTCRayN_org_x(rays, count, i), RTCRayN_org_y(rays, count, i), RTCRayN_org_z(rays, count, i)) + origin,
+          Vector3(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
+}
+
+/// What Embree asks of segments of tubes. Its own round curves are in a tree of oriented boxes, as for hair, where rays take
+/// longer.
+struct Tubes {
   const Stage::Implementation& stage;
 
-  std::optional<Meeting> meet(unsigned solid, const RTCRay& ray) const {
-    const PlacedPart& part = stage.solids[solid];
-    const Ray seen{Vector3(ray.org_x, ray.org_y, ray.org_z) + stage.origin, Vector3(ray.dir_x, ray.dir_y, ray.dir_z)};
-    return view::meet(part.shape, part.inside(seen), ray.tnear);
+  std::optional<double> first(unsigned index, const Ray& ray, double lowest) const {
+    return stage.segments[index].line.first(ray, lowest);
+  }
+  Aabb bounds(unsigned index) const {
+    const RoundLine& line = stage.segments[index].line;
+    const Vector3 end = line.start() + line.axis(), radius = Vector3::Constant(line.radius());
+    return {line.start().cwiseMin(end) - radius, line.start().cwiseMax(end) + radius};
   }
 };
 
+/// What it asks of solids.
+struct Solids {
+  const Stage::Implementation& stage;
+
+  std::optional<double> first(unsigned index, const Ray& ray, double lowest) const {
+    const PlacedPart& part = stage.solids[index];
+    const auto meeting = meet(part.shape, part.inside(ray), lowest);
+    return meeting ? std::optional<double>(meeting->t) : std::nullopt;
+  }
+  Aabb bounds(unsigned index) const { return verlet_cable::bounds(stage.solids[index].shape, stage.solids[index].pose); }
+};
+
+template <class Things>
 void find_bounds(const RTCBoundsFunctionArguments* arguments) {
   const auto& stage = *static_cast<const Stage::Implementation*>(arguments->geometryUserPtr);
-  const PlacedPart& part = stage.solids[arguments->primID];
-  Aabb box = bounds(part.shape, part.pose);
+  Aabb box = Things{stage}.bounds(arguments->primID);
   box.translate(-stage.origin);
   const double margin = 1e-6 * (1 + box.min().cwiseAbs().maxCoeff() + box.max().cwiseAbs().maxCoeff());
   RTCBounds& out = *arguments->bounds_o;
@@ -105,30 +126,32 @@ void find_bounds(const RTCBoundsFunctionArguments* arguments) {
   out.upper_z = static_cast<float>(box.max().z() + margin);
 }
 
-void intersect_solid(const RTCIntersectFunctionNArguments* arguments) {
-  const SolidsOf solids{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
+template <class Things>
+void intersect(const RTCIntersectFunctionNArguments* arguments) {
+  const Things things{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
   const unsigned count = arguments->N;
   RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
   RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
   for (unsigned i = 0; i < count; ++i) {
     if (arguments->valid[i] != -1) continue;
-    const auto meeting = solids.meet(arguments->primID, rtcGetRayFromRayN(rays, count, i));
-    if (!meeting || !(static_cast<float>(meeting->t) < RTCRayN_tfar(rays, count, i))) continue;
-    RTCRayN_tfar(rays, count, i) = static_cast<float>(meeting->t);
+    const auto t = things.first(arguments->primID, ray_of(rays, count, i, things.stage.origin), RTCRayN_tnear(rays, count, i));
+    if (!t || !(static_cast<float>(*t) < RTCRayN_tfar(rays, count, i))) continue;
+    RTCRayN_tfar(rays, count, i) = static_cast<float>(*t);
     RTCHitN_geomID(hits, count, i) = arguments->geomID;
     RTCHitN_primID(hits, count, i) = arguments->primID;
     RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];
   }
 }
 
-void occlude_by_solid(const RTCOccludedFunctionNArguments* arguments) {
-  const SolidsOf solids{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
+template <class Things>
+void occlude(const RTCOccludedFunctionNArguments* arguments) {
+  const Things things{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
   const unsigned count = arguments->N;
+  RTCRayN* rays = arguments->ray;
   for (unsigned i = 0; i < count; ++i) {
     if (arguments->valid[i] != -1) continue;
-    const RTCRay ray = rtcGetRayFromRayN(arguments->ray, count, i);
-    const auto meeting = solids.meet(arguments->primID, ray);
-    if (meeting && meeting->t <= ray.tfar) RTCRayN_tfar(arguments->ray, count, i) = -std::numeric_limits<float>::infinity();
+    const auto t = things.first(arguments->primID, ray_of(rays, count, i, things.stage.origin), RTCRayN_tnear(rays, count, i));
+    if (t && *t <= RTCRayN_tfar(rays, count, i)) RTCRayN_tfar(rays, count, i) = -std::numeric_limits<float>::infinity();
   }
 }
 
@@ -139,19 +162,22 @@ Item* new_buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, std
   return items;
 }
 
-struct Vertex {
-  float x, y, z, radius;
-};
-
-Vertex vertex_at(const Vector3& place, double radius) {
-  return {static_cast<float>(place.x()), static_cast<float>(place.y()), static_cast<float>(place.z()),
-          static_cast<float>(radius)};
-}
-
 void attach(RTCScene scene, RTCGeometry geometry, unsigned id) {
   rtcCommitGeometry(geometry);
   rtcAttachGeometryByID(scene, geometry, id);
   rtcReleaseGeometry(geometry);
+}
+
+/// Things whose rays' meetings are asked for.
+template <class Things>
+RTCGeometry new_geometry(std::size_t count, Stage::Implementation& stage) {
+  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);
+  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(count));
+  rtcSetGeometryUserData(geometry, &stage);
+  rtcSetGeometryBoundsFunction(geometry, find_bounds<Things>, nullptr);
+  rtcSetGeometryIntersectFunction(geometry, intersect<Things>);
+  rtcSetGeometryOccludedFunction(geometry, occlude<Things>);
+  return geometry;
 }
 
 }  // namespace
@@ -202,11 +228,8 @@ std::vector<PlacedPart>& Stage::Implementation::group_of(const Shape& shape) {
     Implementation& stage;
 
     std::vector<PlacedPart>& operator()(const PlaneShape&) const { return stage.planes; }
-    std::vector<PlacedPart>& operator()(const SphereShape&) const { return stage.spheres; }
-    // Without a length, it would be no curve.
-    std::vector<PlacedPart>& operator()(const CapsuleShape& capsule) const {
-      return capsule.length > 0 ? stage.capsules : stage.solids;
-    }
+    std::vector<PlacedPart>& operator()(const SphereShape&) const { return stage.solids; }
+    std::vector<PlacedPart>& operator()(const CapsuleShape&) const { return stage.solids; }
     std::vector<PlacedPart>& operator()(const CylinderShape&) const { return stage.solids; }
     std::vector<PlacedPart>& operator()(const BoxShape&) const { return stage.boxes; }
     std::vector<PlacedPart>& operator()(const MeshShape&) const { return stage.meshes; }
@@ -228,7 +251,8 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
   const bool is_striped = paint.look.pattern == Look::Pattern::stripes && !tube.orientations.empty();
   const std::size_t first = segments.size();
   for (std::size_t i = 0; i < count; ++i) {
-    TubeSegment segment{index, tube.centers[i], tube.centers[i + 1], tube.radii[tube.radii.size() == 1 ? 0 : i], &paint};
+    const double radius = tube.radii[tube.radii.size() == 1 ? 0 : i];
+    TubeSegment segment{index, RoundLine(tube.centers[i], tube.centers[i + 1], radius), &paint};
     if (is_striped) {
       const Eigen::Matrix3d axes = tube.orientations[i].normalized().toRotationMatrix();
       segment.is_striped = true;
@@ -246,8 +270,8 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
 
 void Stage::Implementation::find_origin() {
   Aabb box;
-  for (const TubeSegment& segment : segments) box.extend(segment.start).extend(segment.end);
-  for (const auto* group : {&boxes, &spheres, &capsules, &solids, &meshes})
+  for (const TubeSegment& segment : segments) box.extend(segment.line.start()).extend(segment.line.start() + segment.line.axis());
+  for (const auto* group : {&boxes, &solids, &meshes})
     for (const PlacedPart& part : *group) box.extend(part.pose.position);
   if (!box.isEmpty()) origin = box.center();
 }
@@ -258,8 +282,6 @@ void Stage::Implementation::build(const Implementation* before) {
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
   add_tubes();
   add_boxes();
-  add_spheres();
-  add_capsules();
   add_solids();
   add_meshes(before);
   rtcCommitScene(scene);
@@ -267,40 +289,7 @@ void Stage::Implementation::build(const Implementation* before) {
 }
 
 void Stage::Implementation::add_tubes() {
-  if (segments.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * segments.size());
-  auto* indices = new_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, segments.size());
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    vertices[2 * i] = vertex_at(segments[i].start - origin, segments[i].radius);
-    vertices[2 * i + 1] = vertex_at(segments[i].end - origin, segments[i].radius);
-    indices[i] = static_cast<unsigned>(2 * i);
-  }
-  attach(scene, geometry, tubes_id);
-}
-
-void Stage::Implementation::add_spheres() {
-  if (spheres.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_SPHERE_POINT);
-  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, spheres.size());
-  for (std::size_t i = 0; i < spheres.size(); ++i)
-    vertices[i] = vertex_at(spheres[i].pose.position - origin, std::get<SphereShape>(spheres[i].shape).radius);
-  attach(scene, geometry, spheres_id);
-}
-
-void Stage::Implementation::add_capsules() {
-  if (capsules.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_ROUND_LINEAR_CURVE);
-  auto* vertices = new_buffer<Vertex>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4, 2 * capsules.size());
-  auto* indices = new_buffer<unsigned>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT, capsules.size());
-  for (std::size_t i = 0; i < capsules.size(); ++i) {
-    const auto& [radius, length] = std::get<CapsuleShape>(capsules[i].shape);
-    const Vector3 middle = capsules[i].pose.position - origin, half = 0.5 * length * capsules[i].axes.col(2);
-    vertices[2 * i] = vertex_at(middle - half, radius);
-    vertices[2 * i + 1] = vertex_at(middle + half, radius);
-    indices[i] = static_cast<unsigned>(2 * i);
-  }
-  attach(scene, geometry, capsules_id);
+  if (!segments.empty()) attach(scene, new_geometry<Tubes>(segments.size(), *this), tubes_id);
 }
 
 void Stage::Implementation::add_boxes() {
@@ -328,14 +317,7 @@ void Stage::Implementation::add_boxes() {
 }
 
 void Stage::Implementation::add_solids() {
-  if (solids.empty()) return;
-  RTCGeometry geometry = rtcNewGeometry(device(), RTC_GEOMETRY_TYPE_USER);
-  rtcSetGeometryUserPrimitiveCount(geometry, static_cast<unsigned>(solids.size()));
-  rtcSetGeometryUserData(geometry, this);
-  rtcSetGeometryBoundsFunction(geometry, find_bounds, nullptr);
-  rtcSetGeometryIntersectFunction(geometry, intersect_solid);
-  rtcSetGeometryOccludedFunction(geometry, occlude_by_solid);
-  attach(scene, geometry, solids_id);
+  if (!solids.empty()) attach(scene, new_geometry<Solids>(solids.size(), *this), solids_id);
 }
 
 void Stage::Implementation::add_meshes(const Implementation* before) {
@@ -375,10 +357,6 @@ const PlacedPart* Stage::Implementation::part_hit(const RTCHit& hit) const {
       return nullptr;
     case boxes_id:
       return &boxes[hit.primID / triangles_of_box];
-    case spheres_id:
-      return &spheres[hit.primID];
-    case capsules_id:
-      return &capsules[hit.primID];
     default:
       return &solids[hit.primID];
   }
@@ -399,7 +377,7 @@ Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RT
 Stage::Implementation::Housing Stage::Implementation::around(const Vector3& point) const {
   constexpr double reach = 1e-6;  // [m]
   Housing found;
-  for (const auto* group : {&boxes, &spheres, &capsules, &solids, &meshes})
+  for (const auto* group : {&boxes, &solids, &meshes})
     for (const PlacedPart& part : *group)
       if (closest_point(part.shape, part.inside(point), reach).distance < reach) found.push_back(&part);
   return found;

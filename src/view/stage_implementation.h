@@ -35,8 +35,7 @@ struct Sighting {
 /// A segment of a tube, as rays meet it.
 struct TubeSegment {
   int thing = 0;
-  Vector3 start, end;  ///< [m] fixed frame
-  double radius = 0;   ///< [m]
+  RoundLine line;  ///< fixed frame
   const Paint* paint = nullptr;
   // Where the stripes are. None where there are none.
   bool is_striped = false;
@@ -92,15 +91,13 @@ struct Stage::Implementation {
   std::vector<TubeSegment> segments;
   std::vector<PlacedPart> planes;  ///< which have no bounds
   std::vector<PlacedPart> boxes;
-  std::vector<PlacedPart> spheres;
-  std::vector<PlacedPart> capsules;
-  std::vector<PlacedPart> solids;  ///< of which Embree knows nothing
+  std::vector<PlacedPart> solids;  ///< round ones
   std::vector<PlacedPart> meshes;
   std::map<const TriangleMesh*, std::shared_ptr<const MeshTree>> trees;
   RTCScene scene = nullptr;
 
   /// By which Embree names what it has hit: the geometry's id.
-  static constexpr unsigned tubes_id = 0, boxes_id = 1, spheres_id = 2, capsules_id = 3, solids_id = 4, first_mesh_id = 5;
+  static constexpr unsigned tubes_id = 0, boxes_id = 1, solids_id = 2, first_mesh_id = 3;
 
   /// The nearest plane that a ray meets before t = `highest`. Its index, or -1, and where.
   struct PlaneMeeting {
@@ -139,8 +136,6 @@ struct Stage::Implementation {
   void build(const Implementation* before);
   void add_tubes();
   void add_boxes();
-  void add_spheres();
-  void add_capsules();
   void add_solids();
   void add_meshes(const Implementation* before);
 };

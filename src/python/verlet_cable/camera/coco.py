@@ -44,8 +44,9 @@ class Dataset:
     depends on it and k only.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
-    that has pixels in the image, and of no other) and the category cable; and beside that, of images: matrix, distortion and pose of the camera, the light, labels and crossings; of
-    annotations: cable (its name), positions [m] of its keypoints in the optical frame, and mask (its number in masks).
+    that has pixels in the image, and of no other) and the category cable; and beside that, of images: matrix, distortion and pose of the
+    camera, the light, labels and crossings; of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
+    mask (its number in masks).
     """
 
     def __init__(self, path: Union[str, os.PathLike[str]], keypoints: int = 21, seed: int = 0) -> None:
