@@ -1,99 +1,84 @@
-// Fits cables to synthetic recordings with 2 mm of noise, again and again with other noise, and prints what was found over what
-// is true, and how often the 95 % intervals hold the truth. Run by scripts/real.
-#include <array>
+// Fits cables to recordings of a rod that another program has simulated, again and again with other noise, and prints what was
+// found over what is true, and how often the 95 % intervals of what is determined hold the truth. Run by scripts/real.
 #include <cmath>
 #include <cstdio>
-#include <numeric>
+#include <cstdlib>
 
-#include "cable_fit/confidence.h"
-#include "cable_fit/least_squares.h"
-#include "synthetic.h"
+#include "core/world/parallel_for.h"
+#include "known_rod.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
 
-constexpr int tries = 10, takes = 4, segments = 32;
-constexpr double duration = 4, noise = 0.002;  // [s], [m]
+constexpr int takes = 4, motions = 20, segments = 40, rod_segments = 80;
+constexpr double duration = 2;  // [s]
+constexpr int known = 7;        ///< parameters whose values are known, and not 0
 
-struct Known {
-  const char* name;
-  double (*value)(const MaterialDesc& material);
-};
-constexpr Known known_values[] = {
-    // in the order of the parameters
-    {"bending_stiffness", [](const MaterialDesc& m) { return m.bending_stiffness.front(); }},
-    {"bending_damping", [](const MaterialDesc& m) { return m.bending_damping; }},
-    {"drag", [](const MaterialDesc& m) { return m.drag; }},
-    {"torsional_stiffness", [](const MaterialDesc& m) { return m.torsional_stiffness; }},
+struct Tally {
+  double predicting = 0, found = 0, furthest = 1;  // found over true, a sum of sets
+  int determined = 0, held = 0;
 };
 
-struct Found {
-  double ratio[std::size(known_values)];
-  bool covered[std::size(known_values)];
-};
-
-Found found_by(const Problem& problem, const std::vector<double>& values, const MaterialDesc& truth) {
-  const std::vector<Confidence> intervals = confidence(problem, values);
-  Found found;
-  for (std::size_t i = 0; i < std::size(known_values); ++i) {
-    const double difference = values[i] - std::log10(known_values[i].value(truth));
-    found.ratio[i] = std::pow(10, difference);
-    found.covered[i] = std::abs(difference) <= intervals[i].half_width;
-  }
-  return found;
+double ratio(std::size_t parameter, const Parameter& of, double value) {
+  return scene_value(of, value) / scene_value(of, value_of_rod(parameter));
 }
 
-/// By the line through the markers, and by the centre line.
-std::array<Found, 2> one_try(int number) {
-  const SceneDesc known = known_cable();
-  const MaterialDesc& truth = known.materials[0].material;
-  std::vector<Recording> recordings;
-  std::vector<Smoothed> inputs;
-  for (int take = 0; take < takes; ++take) {
-    recordings.push_back(synthetic_recording(known, take, duration, noise, 100 * (number + 1)));
-    inputs.push_back(smoothed(recordings.back()));
-  }
-  CableSettings settings;
-  settings.name = "found";
-  settings.segments = segments;
-  settings.linear_density = truth.linear_density;
-  std::vector<int> all(takes);
-  std::iota(all.begin(), all.end(), 0);
-  measure_cable(recordings, inputs, all, settings);
-  const Problem on_markers{recordings, inputs, settings, cable_parameters(settings), [] {}};
-  const std::vector<double> line = fit(on_markers, all, coarse_search(on_markers, all));
-  settings.centre_line = true;
-  const Problem beside{recordings, inputs, settings, cable_parameters(settings), [] {}};
-  return {found_by(on_markers, line, truth), found_by(beside, fit(beside, all, with_markers_on_line(settings, line)), truth)};
-}
-
-void print_table(const char* title, const std::vector<Found>& found) {
-  std::printf(
-      "\n%s\n\n| parameter | mean of found / true | furthest from 1 | intervals that hold the truth |\n|---|---|---|---|\n",
-      title);
-  for (std::size_t i = 0; i < std::size(known_values); ++i) {
-    double mean = 0, furthest = 1;
-    int covered = 0;
-    for (const Found& one : found) {
-      mean += one.ratio[i] / tries;
-      if (std::abs(one.ratio[i] - 1) > std::abs(furthest - 1)) furthest = one.ratio[i];
-      covered += one.covered[i];
+void print_table(const std::vector<Recording>& clean, const char* motion, double noise, int sets) {
+  std::vector<Tally> tallies(known);
+  std::vector<std::string> names;
+  int curvatures = 0;
+  for (int set = 0; set < sets; ++set) {
+    std::vector<Recording> recordings;
+    for (int take = 0; take < takes; ++take) {
+      const std::size_t which = static_cast<std::size_t>(set + take) % clean.size();
+      recordings.push_back(with_noise(clean[which], noise, static_cast<unsigned>(1000 * set + take)));
     }
-    std::printf("| %s | %.3f | %.3f | %d of %d |\n", known_values[i].name, mean, furthest, covered, tries);
+    const FoundRod rod = find_rod(recordings, segments);
+    names.clear();
+    for (std::size_t i = 0; i < rod.parameters.size(); ++i) {
+      const Confidence& confidence = rod.estimate.confidence[i];
+      if (i >= known) {
+        curvatures += confidence.told;
+        continue;
+      }
+      names.push_back(rod.parameters[i].key);
+      Tally& tally = tallies[i];
+      const double found = ratio(i, rod.parameters[i], rod.estimate.values[i]);
+      tally.predicting += ratio(i, rod.parameters[i], rod.predicting[i]) / sets;
+      tally.found += found / sets;
+      if (std::abs(found - 1) > std::abs(tally.furthest - 1)) tally.furthest = found;
+      tally.determined += confidence.told;
+      tally.held += confidence.told && std::abs(rod.estimate.values[i] - value_of_rod(i)) <= confidence.half_width;
+    }
+    std::fprintf(stderr, "%s, %g mm: set %d of %d\n", motion, 1000 * noise, set + 1, sets);
   }
+  std::printf("\n%s, %g mm of noise:\n\n", motion, 1000 * noise);
+  std::printf(
+      "| parameter | predicting best / true | found / true | furthest from 1 | determined | of these, intervals that hold the "
+      "truth |\n");
+  std::printf("|---|---|---|---|---|---|\n");
+  for (int i = 0; i < known; ++i)
+    std::printf("| `%s` | %.3f | %.3f | %.3f | %d of %d | %d |\n", names[i].c_str(), tallies[i].predicting, tallies[i].found,
+                tallies[i].furthest, tallies[i].determined, sets, tallies[i].held);
+  std::printf("\nCurvatures of the straight rod called determined: %d\n", curvatures);
+  std::fflush(stdout);
+}
+
+std::vector<Recording> record(int count, unsigned first_seed, double pace, double seconds) {
+  std::vector<Recording> recordings(count);
+  parallel_for(recordings.size(), [&](std::size_t i) {
+    recordings[i] = recording_of_rod(first_seed + static_cast<unsigned>(i), pace, seconds, rod_segments);
+  });
+  return recordings;
 }
 
 }  // namespace
 }  // namespace verlet_cable::cable_fit
 
-int main() {
+int main(int argc, char** argv) {
   using namespace verlet_cable::cable_fit;
-  std::vector<Found> on_markers, beside;
-  for (int number = 0; number < tries; ++number) {
-    const std::array<Found, 2> found = one_try(number);
-    on_markers.push_back(found[0]);
-    beside.push_back(found[1]);
-  }
-  print_table("Line through the markers:", on_markers);
-  print_table("Centre line:", beside);
+  const int sets = argc > 1 ? std::atoi(argv[1]) : 20;
+  const std::vector<Recording> fast = record(motions, 1, 1, duration);
+  for (const double noise : {0.002, 0.004, 0.001}) print_table(fast, "Swinging hands", noise, sets);
+  print_table(record(takes, 101, 0.12, duration), "Slow hands", 0.002, std::min(sets, 5));
 }

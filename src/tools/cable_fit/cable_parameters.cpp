@@ -60,6 +60,11 @@ constexpr double curvature_step = 0.05;  // [1/m]
 constexpr double offset_step = 0.001;    // [m]
 constexpr double guessed_drag = 0.1;     // [1/s] over the linear density
 
+/// What a simulation with twice the segments and half the time step finds otherwise than a finer one: of materials, of what is
+/// stiff, which is part of a segment, and of the length.
+constexpr double unresolved_material = 0.005, unresolved_stiff = 0.02;  // decades
+constexpr double unresolved_length = 1e-3;                              // of it; cables stretch a little
+
 constexpr std::size_t marker_index = curvature_index + 2 * curvature_places;
 
 double first_length(const Recording& recording) {
@@ -165,6 +170,9 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
       parameters.push_back({"cables[0].rest_curvature[" + std::to_string(i) + "][" + std::to_string(axis) + "]", "1/m", false,
                             -highest_curvature, highest_curvature, curvature_step, likely_curvature, -1});
   }
+  for (std::size_t i = 0; i < length_index; ++i) parameters[i].unresolved = unresolved_material;
+  parameters[length_index].unresolved = unresolved_length * settings.length;
+  for (std::size_t i = stiff_index; i < curvature_index; ++i) parameters[i].unresolved = unresolved_stiff;
   if (settings.centre_line) add_marker_parameters(settings, parameters);
   return parameters;
 }

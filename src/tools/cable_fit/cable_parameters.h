@@ -37,6 +37,8 @@ struct Parameter {
   double likely = 0;
   int relative_to = -1;
   double expected = 0;
+  /// Standard deviation of what the simulation, in segments and time steps, leaves of it even where recordings have no noise.
+  double unresolved = 0;
 };
 
 /// Measures on some of the recordings what the hands hold and how, where the markers are, and the length and its limits: those

@@ -11,6 +11,7 @@
 #include "common/output_file.h"
 #include "common/program.h"
 #include "common/progress_bar.h"
+#include "errors_in_variables.h"
 #include "least_squares.h"
 #include "options.h"
 #include "report.h"
@@ -94,9 +95,12 @@ FitResult fit_all(const Problem& problem, const std::vector<Recording>& as_numbe
   std::vector<int> all(problem.recordings.size());
   std::iota(all.begin(), all.end(), 0);
   FitResult result;
-  result.values =
-      fit(problem, all, on_markers ? with_markers_on_line(problem.settings, on_markers->values) : coarse_search(problem, all));
-  result.confidence = confidence(problem, result.values);
+  result.with_exact_inputs =
+      fit(problem, all,
+          on_markers ? with_markers_on_line(problem.settings, on_markers->with_exact_inputs) : coarse_search(problem, all));
+  Estimate estimate = with_input_errors(problem, all, result.with_exact_inputs, for_parameters.corrections);
+  result.values = std::move(estimate.values);
+  result.confidence = std::move(estimate.confidence);
   const auto errors = [&](const std::vector<FittedCable>& cables) {
     return Errors{prediction_errors(cables, as_numbered), prediction_errors(cables, problem.recordings)};
   };
@@ -110,10 +114,18 @@ FitResult fit_all(const Problem& problem, const std::vector<Recording>& as_numbe
 
 int most_simulations(const Problem& problem, bool cross_validated) {
   const int count = static_cast<int>(problem.recordings.size());
-  int simulations = most_simulations(problem, count, for_parameters);
-  if (cross_validated)
-    for (const std::vector<int>& left_out : left_out_together(count))
-      simulations += most_simulations(problem, count - static_cast<int>(left_out.size()), for_predictions);
+  std::vector<int> all(count);
+  std::iota(all.begin(), all.end(), 0);
+  int simulations = most_simulations(problem, count, for_parameters) +
+                    most_simulations_with_input_errors(problem, all, for_parameters.corrections);
+  if (!cross_validated) return simulations;
+  for (const std::vector<int>& left_out : left_out_together(count)) {
+    const int others = count - static_cast<int>(left_out.size());
+    // Alike recordings have about as many errors: those of the first ones.
+    const std::vector<int> training(all.begin(), all.begin() + others);
+    simulations += most_simulations(problem, others, for_predictions) +
+                   most_simulations_with_input_errors(problem, training, for_predictions.corrections);
+  }
   return simulations;
 }
 

@@ -1,19 +1,24 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <vector>
 
-#include "differences.h"
+#include "cable_parameters.h"
 
 namespace verlet_cable::cable_fit {
 
 /// How well the recordings tell a parameter.
 struct Confidence {
   double half_width = 0;  ///< of its 95 % interval, in the scale in which it is looked for; infinite: they do not tell it
-  bool told = false;      ///< the interval is small enough to mean something, or without 0, and the value not at its limit
+  bool told = false;      ///< the interval is small enough to mean something, or far from 0, and the value not at its limit
 };
 
-/// One a parameter, of the values that were fitted to all recordings. The variance of what the recordings say is that between
-/// parts of them, each of a second or more (a sandwich estimate): differences within a part are anything but independent.
-std::vector<Confidence> confidence(const Problem& problem, const std::vector<double>& values);
+/// Into so many parts each of some recordings is cut, so that there are enough to tell the scatter between them.
+int parts_of_each(int recordings);
+
+/// One a parameter. Covariances: by what is known of noise and of the errors of the model, and by the scatter between parts of
+/// the recordings (a sandwich estimate), of so many degrees of freedom. The wider interval counts.
+std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, const std::vector<double>& values,
+                                      const Eigen::MatrixXd& by_noise, const Eigen::MatrixXd& by_scatter, int degrees);
 
 }  // namespace verlet_cable::cable_fit

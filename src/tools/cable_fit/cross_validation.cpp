@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/world/parallel_for.h"
+#include "errors_in_variables.h"
 #include "least_squares.h"
 
 namespace verlet_cable::cable_fit {
@@ -52,7 +53,9 @@ std::vector<FittedCable> left_out_fits(const Problem& problem, const std::vector
     const std::vector<double> start = on_markers.empty()
                                           ? coarse_search(of_training, training)
                                           : with_markers_on_line(of_training.settings, on_markers[left_out.front()].values);
-    const std::vector<double> values = fit(of_training, training, start, for_predictions);
+    const std::vector<double> values =
+        with_input_errors(of_training, training, fit(of_training, training, start, for_predictions), for_predictions.corrections)
+            .values;
     for (const int i : left_out) fits[i] = {of_training.settings, values};
   }
   return fits;

@@ -11,16 +11,7 @@ namespace {
 
 /// [m] differences above this count linearly.
 constexpr double outlying = 0.01;
-/// [m] the scatter of predictions, and how many neighbouring coordinates err alike: rows within some tenths of a second,
-/// neighbouring markers.
-constexpr double scatter = 0.005;
-constexpr double alike = 100;
-
-/// Half its square is the pseudo-Huber loss.
-double robust(double difference) {
-  const double ratio = difference / outlying;
-  return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
-}
+constexpr double scatter = 0.005;  // [m] of predictions
 
 Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<double>& values, int which) {
   const Prediction prediction =
@@ -33,6 +24,11 @@ Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<dou
 }
 
 }  // namespace
+
+double robust(double difference) {
+  const double ratio = difference / outlying;
+  return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
+}
 
 std::size_t difference_count(const Recording& recording) {
   return static_cast<std::size_t>(recording.rows() - given_rows) * recording.marker_count() * 3;

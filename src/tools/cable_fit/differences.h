@@ -26,6 +26,12 @@ struct RecordingDifferences {
 };
 using Linearization = std::vector<RecordingDifferences>;
 
+/// So many neighbouring coordinates err alike: rows within some tenths of a second, neighbouring markers.
+constexpr double alike = 100;
+
+/// A difference [m], a large one tamed: half its square is the pseudo-Huber loss.
+double robust(double difference);
+
 std::size_t difference_count(const Recording& recording);
 
 /// Those of some recordings, in their order; slopes by differences, the simulations on all cores.

@@ -12,11 +12,12 @@ struct Ending {
   int rounds;        ///< at most, with few segments
   int refinements;   ///< rounds with all of them, at most
   double tolerance;  ///< relative change of the cost in a round
+  int corrections;   ///< steps, at most, that estimate the errors of the inputs, too
 };
 /// Parameters move along where predictions hardly change: noise that predictions cannot know is most of the cost.
-constexpr Ending for_parameters{10, 6, 1e-3};
+constexpr Ending for_parameters{10, 6, 1e-3, 6};
 /// Fits that are only predicted with, and take most of the time.
-constexpr Ending for_predictions{8, 3, 3e-3};
+constexpr Ending for_predictions{8, 1, 3e-3, 2};
 
 /// Largest number of recordings that a fit to so many simulates.
 int most_simulations(const Problem& problem, int recordings, const Ending& ending = for_parameters);

@@ -43,10 +43,17 @@ std::vector<AttachmentDesc> clamps(const Markers& markers) {
   return clamps;
 }
 
+HeldEnds held_ends(const Markers& markers, const Recording& recording) {
+  return markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
+}
+
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording) {
+  return predict(cable, markers, recording, held_ends(markers, recording));
+}
+
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends) {
   SceneDesc scene = cable;
   scene.cables.front().attachments = clamps(markers);
-  const HeldEnds ends = markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
   const FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
   start_along(markers, recording, frames.at(0), scene);
   World world(scene, frames.at(0));

@@ -32,4 +32,10 @@ struct Prediction {
 /// allows. Throws SceneError where the cable cannot be.
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording);
 
+/// The same with ends that are held otherwise than the recording says, in roll for instance.
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends);
+
+/// What holds the cable of a recording, as `predict` takes it.
+HeldEnds held_ends(const Markers& markers, const Recording& recording);
+
 }  // namespace verlet_cable::cable_fit

@@ -34,6 +34,7 @@ Json parameters_json(const Fit& fit) {
     json.push_back({{"key", parameter.key},
                     {"unit", parameter.unit},
                     {"value", scene_value(parameter, result.values[i])},
+                    {"value_with_exact_inputs", scene_value(parameter, result.with_exact_inputs[i])},
                     {"low", range.low},
                     {"high", range.high},
                     {"told_by_the_data", result.confidence[i].told ? "yes" : "no"}});

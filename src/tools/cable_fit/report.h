@@ -22,12 +22,13 @@ struct Resegmented {
 
 /// What a fit to all recordings found, and how well it can be trusted.
 struct FitResult {
-  std::vector<double> values;            ///< a parameter, in its scale
-  std::vector<Confidence> confidence;    ///< a parameter
-  Errors fitted;                         ///< by the fit to all recordings
-  std::vector<Resegmented> resegmented;  ///< errors of recordings in order
-  std::vector<FittedCable> folds;        ///< fits that did not know the recording; empty if not asked for
-  Errors left_out;                       ///< by these
+  std::vector<double> values;             ///< a parameter, in its scale
+  std::vector<double> with_exact_inputs;  ///< likewise, if hands moved exactly as smoothing has left them
+  std::vector<Confidence> confidence;     ///< a parameter
+  Errors fitted;                          ///< by the fit to all recordings
+  std::vector<Resegmented> resegmented;   ///< errors of recordings in order
+  std::vector<FittedCable> folds;         ///< fits that did not know the recording; empty if not asked for
+  Errors left_out;                        ///< by these
 };
 
 /// A fit with what was looked for.
