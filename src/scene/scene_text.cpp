@@ -16,6 +16,7 @@
 #include "verlet_cable/scene/scene_reader.h"
 #include "within_memory.h"
 #include "yaml_hint.h"
+#include "yaml_text.h"
 
 namespace verlet_cable {
 namespace {
@@ -176,21 +177,27 @@ FileAccess access_beside(const std::string& scene) {
   return {true, std::filesystem::path(scene).parent_path().string()};
 }
 
-SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
+void read_yaml_text(const std::string& text, const std::function<void(const YAML::Node& root)>& read) {
   if (text.size() > largest_scene_text)
     throw SceneError(
         {"scene: " + std::to_string(text.size()) + " bytes or more; allowed: at most " + std::to_string(largest_scene_text)});
   check_encoding(text);
-  return within_memory([&] {
+  within_memory([&] {
     const YamlText yaml(text);
     try {
       check_size(yaml);
-      return read_scene(YAML::Load(yaml.text()), {}, sources);
+      read(YAML::Load(yaml.text()));
     } catch (const YAML::Exception& error) {
       const std::string hint = yaml_hint(yaml.text(), error);
       throw SceneError({yaml.place(error.mark) + escaped(error.msg, longest_message) + (hint.empty() ? "" : "; " + hint)});
     }
   });
+}
+
+SceneDesc read_scene_text(const std::string& text, const SceneSources& sources) {
+  SceneDesc scene;
+  read_yaml_text(text, [&](const YAML::Node& root) { scene = read_scene(root, {}, sources); });
+  return scene;
 }
 
 SceneDesc read_scene_file(const std::string& path) {

@@ -12,8 +12,10 @@
 #include "common/program.h"
 #include "common/progress_bar.h"
 #include "errors_in_variables.h"
+#include "harness_command.h"
 #include "least_squares.h"
 #include "options.h"
+#include "prediction_files.h"
 #include "report.h"
 #include "scene/text.h"
 #include "smoothing.h"
@@ -35,10 +37,6 @@ void check_output(const char* option, const std::string& path, const std::vector
   for (const std::string& other : others)
     if (!other.empty() && tools::is_same_file(path, other))
       errors.push_back(std::string(option) + ": " + quoted(path) + " is " + quoted(other) + "; allowed: another file");
-}
-
-std::string prediction_path(const std::string& directory, const std::string& recording) {
-  return (std::filesystem::path(directory) / std::filesystem::path(recording).filename()).string();
 }
 
 /// Why files cannot be made in a directory that may not be there yet.
@@ -129,31 +127,17 @@ int most_simulations(const Problem& problem, bool cross_validated) {
   return simulations;
 }
 
-/// Adds what could not be written to `failures`.
-void write_predictions(const std::string& directory, const Fit& fit, std::vector<std::string>& failures) {
-  std::error_code problem;
-  std::filesystem::create_directories(directory, problem);
-  if (problem) return failures.push_back("cannot make the directory " + tools::quoted_path(directory) + ": " + problem.message());
-  const std::vector<Recording>& recordings = fit.problem.recordings;
-  const std::vector<Prediction> predicted = predictions(fit.result.folds, recordings);
-  for (std::size_t i = 0; i < predicted.size(); ++i)
-    failures.push_back(
-        tools::write_file(prediction_path(directory, recordings[i].path), prediction_csv(recordings[i], predicted[i])));
-}
-
 /// Writes all that was asked for, whatever else fails. `also`: the fit of the centre line, or null.
 bool write_results(const Options& options, const std::vector<SwappedEnds>& swapped, const Fit& on_markers, const Fit* also) {
   std::vector<std::string> failures{tools::write_file(options.output, scene_yaml(on_markers))};
   if (also) failures.push_back(tools::write_file(options.centre_line, scene_yaml(*also)));
   if (!options.report.empty()) failures.push_back(tools::write_file(options.report, report_json(swapped, on_markers, also)));
-  if (!options.predictions.empty()) write_predictions(options.predictions, also ? *also : on_markers, failures);
-  bool good = true;
-  for (const std::string& failure : failures) {
-    if (failure.empty()) continue;
-    std::cerr << program << ": stopped: " << failure << "\n";
-    good = false;
+  if (!options.predictions.empty()) {
+    const Fit& fit = also ? *also : on_markers;
+    const std::vector<Recording>& recordings = fit.problem.recordings;
+    write_prediction_files(options.predictions, recordings, predictions(fit.result.folds, recordings), failures);
   }
-  return good;
+  return report_failures(failures);
 }
 
 /// As an argument in a shell.
@@ -188,6 +172,7 @@ int run(const std::vector<std::string>& arguments) {
   }
   std::vector<std::string> others = options.recordings;
   check_output("--output", options.output, others, errors);
+  if (!options.harness.empty()) others.push_back(options.harness);
   others.push_back(options.output);
   check_output("--report", options.report, others, errors);
   others.push_back(options.report);
@@ -196,6 +181,7 @@ int run(const std::vector<std::string>& arguments) {
   const std::vector<Recording> as_numbered = read_recordings(options.recordings, errors);
   if (options.recordings.size() == 1 && !options.predictions.empty())
     errors.emplace_back("--predictions: one recording, which no fit leaves out; allowed: two or more");
+  if (!options.harness.empty()) return run_harness(options, as_numbered, std::move(errors));
   if (!errors.empty()) return refuse(errors);
   if (!options.assumed.empty())
     std::cerr << "cable_fit: note: assumed, as not given: " << options.assumed << "; weigh and measure the cable\n";

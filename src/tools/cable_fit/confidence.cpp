@@ -1,8 +1,10 @@
 #include "confidence.h"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numeric>
 
 #include "verlet_cable/core/scene_desc.h"
 
@@ -51,6 +53,34 @@ std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, 
                                              : confidence.half_width < infinity;
   }
   return result;
+}
+
+std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<double>& values) {
+  std::vector<int> all(problem.recordings.size());
+  std::iota(all.begin(), all.end(), 0);
+  const Prior prior(problem.parameters, values);
+  Eigen::MatrixXd information = prior.slopes.transpose() * prior.slopes;
+  // The prior is one more thing known, as uncertain as it says.
+  Eigen::MatrixXd scatter = information;
+  const int count = static_cast<int>(all.size()), parts = parts_of_each(count);
+  for (const RecordingDifferences& recording : linearize(problem, all, values, true)) {
+    information += recording.slopes.transpose() * recording.slopes;
+    for (int part = 0; part < parts; ++part) {
+      const Eigen::Index first = recording.values.size() * part / parts, last = recording.values.size() * (part + 1) / parts;
+      const Eigen::VectorXd gradient =
+          recording.slopes.middleRows(first, last - first).transpose() * recording.values.segment(first, last - first);
+      scatter += gradient * gradient.transpose() * parts * count / (parts * count - 1.0);
+    }
+  }
+  // Parameters differ in scale by orders of magnitude.
+  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+  const Eigen::MatrixXd inverse =
+      scale.asDiagonal() *
+      (scale.asDiagonal() * information * scale.asDiagonal()).completeOrthogonalDecomposition().pseudoInverse() *
+      scale.asDiagonal();
+  const Eigen::MatrixXd covariance = inverse * scatter * inverse;
+  return confidence_of(problem.parameters, values, Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols()), covariance,
+                       parts * count - 1);
 }
 
 }  // namespace verlet_cable::cable_fit

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "cable_parameters.h"
+#include "differences.h"
 
 namespace verlet_cable::cable_fit {
 
@@ -20,5 +20,8 @@ int parts_of_each(int recordings);
 /// the recordings (a sandwich estimate), of so many degrees of freedom. The wider interval counts.
 std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, const std::vector<double>& values,
                                       const Eigen::MatrixXd& by_noise, const Eigen::MatrixXd& by_scatter, int degrees);
+
+/// By the scatter between parts of all recordings alone, with motions of the hands taken for exact.
+std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<double>& values);
 
 }  // namespace verlet_cable::cable_fit

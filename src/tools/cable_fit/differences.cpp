@@ -13,9 +13,13 @@ namespace {
 constexpr double outlying = 0.01;
 constexpr double scatter = 0.005;  // [m] of predictions
 
+Prediction predicted(const Problem& problem, const std::vector<double>& values, int which) {
+  if (problem.predict_harness) return problem.predict_harness(problem.settings.segments, values, which);
+  return predict(cable_scene(problem.settings, values), markers_of(problem.settings, values), problem.inputs[which].recording);
+}
+
 Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<double>& values, int which) {
-  const Prediction prediction =
-      predict(cable_scene(problem.settings, values), markers_of(problem.settings, values), problem.inputs[which].recording);
+  const Prediction prediction = predicted(problem, values, which);
   const std::vector<double> errors = coordinate_errors(prediction, problem.recordings[which]);
   Eigen::VectorXd differences(static_cast<Eigen::Index>(errors.size()));
   const double unit = scatter * std::sqrt(alike);

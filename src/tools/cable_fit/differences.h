@@ -16,6 +16,8 @@ struct Problem {
   CableSettings settings;
   std::vector<Parameter> parameters;
   std::function<void()> simulated;  ///< called whenever a recording was simulated, from one thread at a time
+  /// Of a harness: what predicts a recording, by its index, with so many segments of its trunk; empty: it is one cable.
+  std::function<Prediction(int segments, const std::vector<double>& values, int recording)> predict_harness = {};
 };
 
 /// Predicted minus measured coordinates of a recording in units of the scatter that is expected of them, so that their squares

@@ -13,8 +13,12 @@ namespace {
 constexpr Range segments_range{fewest_segments, 10000, "an integer"};
 constexpr const char* file = "the name of a file";
 
+constexpr Range parts_range{2, 1000, "an integer"};
+constexpr int harness_segments = 24;
+
 constexpr const char* usage =
     "usage: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml [options]\n"
+    "       cable_fit RECORDING.csv... --harness HARNESS.yaml --output SCENE.yaml [options]\n"
     "Fits a cable to recordings of it: CSV files t,x0,y0,z0,x1,... [s, m] of markers along the cable, of which the first two\n"
     "and the last two are on the grippers that hold it.";
 constexpr const char* footer = "exit status: 0 done, 2 a bad recording or option, 3 the fit had to stop";
@@ -26,7 +30,12 @@ void check_required(const Options& options, bool left_out, std::vector<std::stri
   std::set<std::string> seen;
   for (const std::string& path : options.recordings)
     if (!seen.insert(path).second) errors.push_back(quoted(path) + ": given twice; allowed: each recording once");
-  if (options.name.empty()) {
+  if (!options.harness.empty()) {
+    if (!options.name.empty())
+      errors.push_back("--name: " + quoted(options.name) + "; allowed: none, cables of a harness have theirs");
+    if (!options.centre_line.empty())
+      errors.push_back("--centre-line: " + quoted(options.centre_line) + "; allowed: none with --harness");
+  } else if (options.name.empty()) {
     errors.push_back(std::string("--name: missing; allowed: ") + name_words);
   } else if (!is_name(options.name)) {
     errors.push_back("--name: " + quoted(options.name) + "; allowed: " + name_words);
@@ -48,7 +57,14 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   tools::CommandLine line(usage, footer);
   line.add_text("--name", "NAME", "of the cable and its material", options.name, name_words);
   line.add_text("--output", "YAML", "the scene: materials and cables, without initial and attachments", options.output, file);
-  line.add_integer("--segments", "N", "of the cable, default 40", options.segments, segments_range);
+  line.add_text("--harness", "YAML",
+                "the recordings are of a cable with branches: its `cables`, each with `name`, `markers: [first, last]` and,\n"
+                "but for the first one, `from`, the marker at which it leaves another; and `held`, the markers on what\n"
+                "holds it",
+                options.harness, file);
+  int segments = 0, parts = 0;
+  line.add_integer("--segments", "N", "of the cable, default 40; of a harness' first cable, default 24", segments,
+                   segments_range);
   double linear_density = 0, radius = 0;
   line.add_number("--linear-density", "KG_M", "default 0.1; stiffness and damping are found in proportion to it", linear_density,
                   positive, "kg/m");
@@ -61,7 +77,15 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
                 options.centre_line, file);
   line.add_text("--predictions", "DIR", "predictions of the recordings by fits without them, for the centre line if it is fitted",
                 options.predictions, "the name of a directory");
+  line.add_integer("--parts", "N",
+                   "with --harness: in so many parts, of every N-th recording each, recordings are left out, each part of\n"
+                   "a fit to all others; default 2",
+                   parts, parts_range);
   options.recordings = line.parse(arguments, errors);
+  if (segments > 0 || !options.harness.empty()) options.segments = segments > 0 ? segments : harness_segments;
+  if (parts > 0) options.parts = parts;
+  if (parts > 0 && options.harness.empty())
+    errors.push_back("--parts: " + std::to_string(parts) + "; allowed: with --harness only");
   options.help = line.help();
   options.assumed = use_or_assume(linear_density, "--linear-density", "kg/m", options.linear_density);
   const std::string radius_text = use_or_assume(radius, "--radius", "m", options.radius);

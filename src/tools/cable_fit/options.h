@@ -15,6 +15,8 @@ struct Options {
   std::string report;                   ///< path, empty: none
   std::string centre_line;              ///< path of the scene of the centre line, empty: it is not looked for
   std::string predictions;              ///< directory, empty: none
+  std::string harness;                  ///< path of its description, empty: the recordings are of a single cable
+  int parts = 2;                        ///< in which recordings of a harness are left out
   int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]
   double radius = 0.005;        ///< [m]

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scene/frame_source.h"
 #include "start.h"
-#include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -47,6 +45,26 @@ HeldEnds held_ends(const Markers& markers, const Recording& recording) {
   return markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
 }
 
+Prediction simulate(World& world, const FrameSource& frames, double time_step, const std::vector<double>& times,
+                    const std::function<std::vector<Vector3>()>& markers) {
+  Prediction prediction;
+  std::vector<Vector3> positions = markers(), before = positions;
+  for (const double time : times) {
+    // The first step at or after the row; rounding does not add one.
+    const auto step = static_cast<std::int64_t>(std::ceil(time / time_step - 1e-6));
+    while (world.steps() < step && prediction.sound) {
+      const StepResult result = world.step(frames.at(static_cast<double>(world.steps() + 1) * time_step));
+      prediction.sound = result.status != StepResult::Status::fault;
+      before = std::move(positions);
+      positions = markers();
+    }
+    const double back = static_cast<double>(step) - time / time_step;
+    std::vector<Vector3>& row = prediction.positions.emplace_back(positions);
+    for (std::size_t i = 0; i < row.size(); ++i) row[i] += back * (before[i] - positions[i]);
+  }
+  return prediction;
+}
+
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording) {
   return predict(cable, markers, recording, held_ends(markers, recording));
 }
@@ -58,22 +76,11 @@ Prediction predict(const SceneDesc& cable, const Markers& markers, const Recordi
   start_along(markers, recording, frames.at(0), scene);
   World world(scene, frames.at(0));
 
-  Prediction prediction;
-  std::vector<Vector3> positions = marker_positions(world.cables().front(), markers), before = positions;
-  for (const double time : recording.times) {
-    // The first step at or after the row; rounding does not add one.
-    const auto step = static_cast<std::int64_t>(std::ceil(time / scene.time_step - 1e-6));
-    while (world.steps() < step && prediction.sound) {
-      const StepResult result = world.step(frames.at(static_cast<double>(world.steps() + 1) * scene.time_step));
-      prediction.sound = result.status != StepResult::Status::fault;
-      before = std::move(positions);
-      positions = marker_positions(world.cables().front(), markers);
-    }
-    const double back = static_cast<double>(step) - time / scene.time_step;
-    std::vector<Vector3>& row = prediction.positions.emplace_back(positions);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] += back * (before[i] - positions[i]);
-    if (!markers.offsets.empty()) place_held(ends, time, markers.held, row);
-  }
+  Prediction prediction = simulate(world, frames, scene.time_step, recording.times,
+                                   [&] { return marker_positions(world.cables().front(), markers); });
+  if (markers.offsets.empty()) return prediction;
+  for (int row = 0; row < recording.rows(); ++row)
+    place_held(ends, recording.times[row], markers.held, prediction.positions[row]);
   return prediction;
 }
 

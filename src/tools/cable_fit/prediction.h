@@ -1,10 +1,13 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
 #include "recording.h"
+#include "scene/frame_source.h"
 #include "verlet_cable/core/scene_desc.h"
+#include "verlet_cable/core/world.h"
 
 namespace verlet_cable::cable_fit {
 
@@ -25,6 +28,11 @@ struct Prediction {
   bool sound = true;                            ///< false: the simulation had to stop, and stays where it was last
   std::vector<std::vector<Vector3>> positions;  ///< [m] a row of the recording, a marker
 };
+
+/// What a world with a motion of its frames makes of markers at some times [s] from its start. `markers`: where they are in it
+/// now.
+Prediction simulate(World& world, const FrameSource& frames, double time_step, const std::vector<double>& times,
+                    const std::function<std::vector<Vector3>()>& markers);
 
 /// Predicts a recording from its first two rows and what holds the cable, as cable_sim would. `cable`: its materials, and the
 /// cable without `initial` and `attachments`. Without offsets it starts along the markers; with them along a smooth curve beside,

@@ -33,19 +33,6 @@ std::vector<Quaternion> carried_along(const std::vector<Vector3>& directions, co
   return orientations;
 }
 
-/// Each turned as little as possible from the usual one: a hand that has swung round and comes back to a direction has the roll
-/// that it had there, which it would not have if each row followed the one before. Opposite to the usual direction there is no
-/// smallest turn: a hand that comes near it is carried along.
-std::vector<Quaternion> near_usual(const std::vector<Vector3>& directions, const Vector3& usual) {
-  const auto turns_round = [&](const Vector3& direction) { return direction.dot(usual) < turned_round; };
-  if (std::any_of(directions.begin(), directions.end(), turns_round)) return carried_along(directions, usual);
-  const Quaternion upright = smallest_rotation(Vector3::UnitX(), usual);
-  std::vector<Quaternion> orientations;
-  for (const Vector3& direction : directions)
-    orientations.push_back((smallest_rotation(usual, direction) * upright).normalized());
-  return orientations;
-}
-
 FrameTrack track_of(const Recording& recording, int origin, const std::vector<Quaternion>& orientations) {
   FrameTrack track;
   for (int row = 0; row < recording.rows(); ++row)
@@ -54,6 +41,19 @@ FrameTrack track_of(const Recording& recording, int origin, const std::vector<Qu
 }
 
 }  // namespace
+
+std::vector<Quaternion> held_orientations(const std::vector<Vector3>& directions, const Vector3& usual) {
+  // A hand that has swung round and comes back to a direction has the roll that it had there, which it would not have if each
+  // row followed the one before. Opposite to the usual direction there is no smallest turn: a hand that comes near it is
+  // carried along.
+  const auto turns_round = [&](const Vector3& direction) { return direction.dot(usual) < turned_round; };
+  if (std::any_of(directions.begin(), directions.end(), turns_round)) return carried_along(directions, usual);
+  const Quaternion upright = smallest_rotation(Vector3::UnitX(), usual);
+  std::vector<Quaternion> orientations;
+  for (const Vector3& direction : directions)
+    orientations.push_back((smallest_rotation(usual, direction) * upright).normalized());
+  return orientations;
+}
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -141,8 +141,8 @@ HeldEnds held_ends(const Recording& recording) {
 
 HeldEnds held_ends(const Recording& recording, const HeldDirections& usual) {
   const int last = recording.marker_count() - 1;
-  return {track_of(recording, 0, near_usual(directions(recording, 0, 1), usual[0])),
-          track_of(recording, last, near_usual(directions(recording, last - 1, last), usual[1]))};
+  return {track_of(recording, 0, held_orientations(directions(recording, 0, 1), usual[0])),
+          track_of(recording, last, held_orientations(directions(recording, last - 1, last), usual[1]))};
 }
 
 }  // namespace verlet_cable::cable_fit

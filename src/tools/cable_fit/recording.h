@@ -53,6 +53,10 @@ std::vector<double> marker_places(const std::vector<const Recording*>& recording
 /// [m/s] a marker, from the first two rows.
 std::vector<Vector3> initial_velocities(const Recording& recording);
 
+/// What a hand holds in these directions, a row: x along them, each turned the smallest way from the usual direction, that from
+/// +x; of a hand that ever turns further than 120 degrees from it, from row to row.
+std::vector<Quaternion> held_orientations(const std::vector<Vector3>& directions, const Vector3& usual);
+
 /// What holds the cable.
 struct HeldEnds {
   FrameTrack start, end;

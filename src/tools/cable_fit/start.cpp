@@ -8,16 +8,6 @@ namespace {
 constexpr int points_between = 6;        ///< of a smooth curve, from one marker to the next
 constexpr double least_distance = 1e-6;  ///< [m] markers at one place do not stop a curve
 
-struct Place {
-  int segment;
-  double fraction;  ///< along it
-};
-
-Place place_on(int segments, double place) {
-  const int segment = std::min(static_cast<int>(place * segments), segments - 1);
-  return {segment, place * segments - segment};
-}
-
 Vector3 offset(const Markers& markers, const std::vector<Quaternion>& orientations, std::size_t marker) {
   const int segment = place_on(static_cast<int>(orientations.size()), markers.places[marker]).segment;
   return orientations[segment] * Vector3(0, markers.offsets[marker][0], markers.offsets[marker][1]);
@@ -34,6 +24,19 @@ std::vector<Vector3> smooth(const std::vector<double>& along, const std::vector<
   return result;
 }
 
+/// The scene with the cable's length brought within what it allows of its start.
+SceneDesc with_allowed_length(SceneDesc scene) {
+  allow_length(scene.cables.front());
+  return scene;
+}
+
+}  // namespace
+
+SegmentPlace place_on(int segments, double place) {
+  const int segment = std::min(static_cast<int>(place * segments), segments - 1);
+  return {segment, place * segments - segment};
+}
+
 void start_smoothly(const std::vector<Vector3>& points, const std::vector<Vector3>& velocities, InitialShapeDesc& initial) {
   std::vector<double> along{0};
   for (std::size_t i = 1; i < points.size(); ++i)
@@ -42,21 +45,16 @@ void start_smoothly(const std::vector<Vector3>& points, const std::vector<Vector
   initial.velocities = smooth(along, velocities);
 }
 
-/// The scene with the cable's length brought within what it allows of its start.
-SceneDesc with_allowed_length(SceneDesc scene) {
-  CableDesc& cable = scene.cables.front();
+void allow_length(CableDesc& cable) {
   const double start = distances_along(cable.initial.points).back();
   cable.length = std::clamp(cable.length, start / (1 + start_tolerance), start / (1 - start_tolerance));
-  return scene;
 }
-
-}  // namespace
 
 std::vector<Vector3> marker_positions(const SimulatedCable& cable, const Markers& markers) {
   const std::vector<Vector3>& nodes = cable.state.positions;
   std::vector<Vector3> positions;
   for (const double marker : markers.places) {
-    const Place place = place_on(cable.state.segments(), marker);
+    const SegmentPlace place = place_on(cable.state.segments(), marker);
     positions.emplace_back((1 - place.fraction) * nodes[place.segment] + place.fraction * nodes[place.segment + 1]);
   }
   if (markers.offsets.empty()) return positions;

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <string>
+
+#include "verlet_cable/core/scene_desc.h"
+
+namespace verlet_cable::cable_fit {
+
+/// Parts of the text of a scene.
+std::string vector_text(const Vector3& v);
+std::string materials_yaml(const SceneDesc& scene);
+/// An element of `cables`, without its attachments.
+std::string cable_yaml(const CableDesc& cable);
+
+}  // namespace verlet_cable::cable_fit
