@@ -491,6 +491,44 @@ TEST(Contact, StiffCableThatIsPushedBetweenPlatesStaysThereInLongSteps) {
   }
 }
 
+/// A hand draws an elastic cable below the floor by mistake, and comes back. The next node stays on the floor, which pushes it up
+/// and not along: it has no edge there. So nothing is thrown, and contact takes energy.
+TEST(Contact, FloorDoesNotThrowACableThatAHandHoldsBelowIt) {
+  for (const double friction : {0.0, 0.1, 0.5})
+    for (const bool yields : {false, true}) {
+      SceneDesc scene = scenes::one_cable(10, 0.7);
+      MaterialDesc& material = scene.materials[0].material;
+      material.linear_density = 0.14;
+      material.radius = 0.003;
+      material.bending_stiffness = 0.04;
+      material.torsional_stiffness = 0.015;
+      material.bending_damping = 1.3e-4;
+      material.axial_stiffness = 2e4;
+      material.drag = 0.05;
+      if (yields) {
+        material.yield_curvature = 3;
+        material.hardening = 0.05;
+      }
+      add_obstacle("floor", ShapeType::plane, {}, scene);
+      scene.obstacles[0].friction = friction;
+      scene.cables[0].attachments = {scenes::attachment("hand", PlaceDesc::At::start, {0, 0, 0}, "hand"),
+                                     scenes::attachment("end", PlaceDesc::At::end, {0.42, 0, 0.1})};
+      scene.cables[0].attachments[0].initial_pose = InitialPose{0, 0, 0.1, 0, 0, 0};
+      World world(scene, initial_frames(scene));
+      BoundaryInputs inputs = initial_frames(scene);
+      double most = 0;
+      for (int i = 1; i <= 1200; ++i) {
+        const double sine = std::sin(pi * std::min(0.001 * i, 1.0));
+        inputs[1] = {Pose{{0, 0, 0.1 - 0.2 * sine * sine}, Quaternion::Identity()}, true};
+        ASSERT_NE(world.step(inputs).status, StepResult::Status::fault) << i;
+        most = std::max(most, fastest(world));
+        ASSERT_GT(world.ledger().balance.dissipated.contact, -1e-3) << i;
+      }
+      EXPECT_LT(most, 6) << friction << yields;
+      EXPECT_NEAR(world.ledger().unaccounted(), 0, 1e-3) << friction << yields;
+    }
+}
+
 TEST(ContactLaw, StiffensWithDepthAndKeepsFrictionInItsCone) {
   Touch touch;
   touch.radius = radius;

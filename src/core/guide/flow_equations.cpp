@@ -481,7 +481,22 @@ Vector3 CableStepper::flow_reaction(const Substep& s, int node) const {
   return -flow->density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
 }
 
+namespace {
+
+/// What is remembered goes with the material, by the lengths that it had.
+void carry_memory(const Flow& flow, CableState& state) {
+  const int border = 2 * flow.before + 1;
+  if (flow.first == flow.last)
+    carry_bends(border, {0.5 * flow.way, flow.way, 0.5 * flow.way}, state);
+  else
+    carry_bends(border, {0.5 * flow.way, flow.way, flow.way, flow.way, 0.5 * flow.way}, state);
+}
+
+}  // namespace
+
 void CableStepper::finish_flows(const Substep& s, CableState& state) {
+  if (!state.bending_memory.empty())
+    for (const Flow& flow : flows_) carry_memory(flow, state);
   for (std::size_t k = 0; k < flows_.size(); ++k) {
     const Flow& flow = flows_[k];
     const double half_density = 0.5 * flow.density;
@@ -542,12 +557,6 @@ void CableStepper::carry_frames_with_flows(const CableModel& model, CableState& 
     }
     if (!state.rest_curvature.empty()) flow_on(flow, state.rest_lengths, state.rest_curvature);
     if (!state.rest_twist.empty()) flow_on(flow, state.rest_lengths, state.rest_twist);
-    if (state.bending_memory.empty()) continue;
-    const int border = 2 * flow.before + 1;
-    if (flow.first == flow.last)
-      carry_bends(border, {0.5 * flow.way, flow.way, 0.5 * flow.way}, state);
-    else
-      carry_bends(border, {0.5 * flow.way, flow.way, flow.way, flow.way, 0.5 * flow.way}, state);
   }
 }
 

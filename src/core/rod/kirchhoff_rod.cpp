@@ -297,13 +297,18 @@ void KirchhoffRod::forget_flows() {
   for (ChangingJoint& joint : changing_) {
     joint.end = joint.start;
     joint.way = 0;
+    if (slides_) joints_.bring(joint.node, {}, {});
   }
 }
 
 void KirchhoffRod::add_flow(int before, int after, double way) {
   for (ChangingJoint& joint : changing_) {
     const double share = share_of_flow(before, after, joint.node);
-    if (before <= joint.node && joint.node <= after + 1) joint.way = way;
+    if (before <= joint.node && joint.node <= after + 1) {
+      joint.way = way;
+      const HalfBend brought = sum_of({{way, brought_to(joint)}});
+      if (slides_) joints_.bring(joint.node, {brought.yielded[0], brought.yielded[1]}, {brought.slipped[0], brought.slipped[1]});
+    }
     if (share == 0) continue;
     joint.end += share * way;
     const double scale = part_ == 1 ? joint.start / joint.end : 0.5 * (1 + joint.start / joint.end);
@@ -318,6 +323,15 @@ void KirchhoffRod::add_flow(int before, int after, double way) {
   }
 }
 
+/// With what has been brought, but of the start otherwise.
+JointStiffness KirchhoffRod::stiffness_at_end(const ChangingJoint& joint) {
+  const HalfBend brought = sum_of({{joint.way, brought_to(joint)}});
+  JointStiffness stiffness = joint.stiffness;
+  stiffness.yielding.slid = stiffness.yielding.slid + AboutAxes{brought.yielded[0], brought.yielded[1]};
+  stiffness.friction.slid = stiffness.friction.slid + AboutAxes{brought.slipped[0], brought.slipped[1]};
+  return stiffness;
+}
+
 double KirchhoffRod::flow_force(int before, int after) const {
   double force = 0;
   for (const ChangingJoint& joint : changing_) {
@@ -327,7 +341,7 @@ double KirchhoffRod::flow_force(int before, int after) const {
     const int i = joint.node;
     const double start_twist = joints_.start_twist(i);
     const JointAngles end = joint_angles(get(frames_.end, i - 1), get(frames_.end, i), start_twist);
-    const double at_end = energy_slope(joint.stiffness, end, joint.start, joint.end);
+    const double at_end = energy_slope(stiffness_at_end(joint), end, joint.start, joint.end);
     if (part_ == 1) {
       force -= share * at_end;
       continue;
@@ -341,17 +355,17 @@ double KirchhoffRod::flow_force(int before, int after) const {
 /// [N] With which what a joint remembers drives a flow that takes it along.
 double KirchhoffRod::force_of_brought(const ChangingJoint& joint) const {
   const int i = joint.node;
-  const HalfBend brought = joint.way == 0  ? sum_of({{0.5, joint.backward}, {0.5, joint.forward}})
-                           : joint.way > 0 ? joint.forward
-                                           : joint.backward;
+  const HalfBend brought = joint.way == 0 ? sum_of({{0.5, joint.backward}, {0.5, joint.forward}}) : brought_to(joint);
+  const JointStiffness at_end = stiffness_at_end(joint);
   const JointAngles start = joint_angles(get(frames_.start, i - 1), get(frames_.start, i), joints_.start_twist(i));
   const JointAngles end = joint_angles(get(frames_.end, i - 1), get(frames_.end, i), joints_.start_twist(i));
-  const auto force = [&](const SlidingSpring& spring, const std::array<double, 2>& slid) {
+  const auto force = [&](const SlidingSpring& spring, const SlidingSpring& at_end, const std::array<double, 2>& slid) {
     const AboutAxes before = strain_of(spring, joint.stiffness.rest, start);
-    const AboutAxes after = spring.slide(strain_of(spring, joint.stiffness.rest, end)).strain;
+    const AboutAxes after = at_end.slide(strain_of(at_end, joint.stiffness.rest, end)).strain;
     return dot(spring.moment(before + part_ * (after - before)), {slid[0], slid[1]});
   };
-  return force(joint.stiffness.yielding, brought.yielded) + force(joint.stiffness.friction, brought.slipped);
+  return force(joint.stiffness.yielding, at_end.yielding, brought.yielded) +
+         force(joint.stiffness.friction, at_end.friction, brought.slipped);
 }
 
 /// The frames at the end of the present iterate.

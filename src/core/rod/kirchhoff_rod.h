@@ -96,6 +96,8 @@ class KirchhoffRod {
                     double damping_time);
   void turn_frames(const VectorArray& displacement, const VectorArray& segment);
   static void find_brought(const GuidedFlow& flow, const CableState& state, ChangingJoint& joint);
+  static const HalfBend& brought_to(const ChangingJoint& joint) { return joint.way > 0 ? joint.forward : joint.backward; }
+  static JointStiffness stiffness_at_end(const ChangingJoint& joint);
   double force_of_brought(const ChangingJoint& joint) const;
   void set_clamp_frames();
   void store_memory(CableState& state) const;

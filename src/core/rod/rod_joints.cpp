@@ -146,7 +146,7 @@ void RodJoints::resize(int count) {
   twisting_loss.assign(size, 0.0);
   sliding_loss.assign(size, 0.0);
   for (std::vector<SlidingSpring>* springs : {&yielding_, &friction_}) springs->assign(size, {});
-  at_once_.assign(size, {});
+  memory_.assign(size, {});
   for (std::vector<AboutAxes>* slid : {&end_yielded_, &end_slipped_}) slid->assign(size, {});
   moment.assign(size, 0.0);
   convex_stiffness.assign(size, 0.0);
@@ -159,7 +159,7 @@ void RodJoints::set(int joint, const JointStiffness& stiffness, double twist) {
   if (!slides_) return;
   yielding_[joint].slid = stiffness.yielding.slid;
   friction_[joint].slid = stiffness.friction.slid;
-  at_once_[joint] = {stiffness.yielding.slid, stiffness.friction.slid, 0};
+  memory_[joint] = {stiffness.yielding.slid, stiffness.friction.slid, {}, {}, 0};
 }
 
 void RodJoints::set_stiffness(int joint, const JointStiffness& stiffness) {
@@ -209,7 +209,7 @@ void RodJoints::start(const FrameArrays& frames_before, int before, const FrameA
 void RodJoints::slide_at_once(int joint, const AboutAxes& strain) {
   for (SlidingSpring* spring : {&yielding_[joint], &friction_[joint]}) {
     const AboutAxes found = strain - spring->slid, left = spring->slide(found).strain;
-    at_once_[joint].loss += spring->energy(found) - spring->energy(left);
+    memory_[joint].loss += spring->energy(found) - spring->energy(left);
     spring->slid = spring->slid + (found - left);
   }
 }
@@ -223,9 +223,9 @@ struct RodJoints::Slid {
 /// `start` [rad]: the joint's angles beyond those at rest; `change`: of them, over the substep.
 RodJoints::Slid RodJoints::slide(int joint, double part, const AboutAxes& start, const AboutAxes& change) {
   Slid sum;
-  sliding_loss[joint] = at_once_[joint].loss;
-  const auto add = [&](const SlidingSpring& spring, AboutAxes& end_slid) {
-    const AboutAxes before = start - spring.slid, tried = before + change;
+  sliding_loss[joint] = memory_[joint].loss;
+  const auto add = [&](const SlidingSpring& spring, const AboutAxes& brought, AboutAxes& end_slid) {
+    const AboutAxes before = start - spring.slid, tried = before + change - brought;
     const Slide after = spring.slide(tried);
     const AboutAxes slid = tried - after.strain, moment = spring.moment(before + part * (after.strain - before));
     end_slid = spring.slid + slid;
@@ -236,8 +236,8 @@ RodJoints::Slid RodJoints::slide(int joint, double part, const AboutAxes& start,
     sum.zz += part * after.zz;
   };
   const SlidingSpring& yielding = yielding_[joint];
-  add(yielding, end_yielded_[joint]);
-  add(friction_[joint], end_slipped_[joint]);
+  add(yielding, memory_[joint].brought_yielded, end_yielded_[joint]);
+  add(friction_[joint], memory_[joint].brought_slipped, end_slipped_[joint]);
   // What yields is a part of the joint's bending stiffness.
   sum.moment = sum.moment - yielding.moment(start + part * change);
   sum.yy -= part * yielding.y_stiffness;

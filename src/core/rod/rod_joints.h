@@ -96,6 +96,11 @@ class RodJoints {
   void set(int joint, const JointStiffness& stiffness, double twist);
   /// Without what its springs have slid by.
   void set_stiffness(int joint, const JointStiffness& stiffness);
+  /// [rad] What material that flows in brings of what its springs have slid by, while the joint is bent; nothing at first.
+  void bring(int joint, const AboutAxes& yielded, const AboutAxes& slipped) {
+    memory_[joint].brought_yielded = yielded;
+    memory_[joint].brought_slipped = slipped;
+  }
   /// Finds the angles at the start. `before`, `after`: index of the first joint's frames; joints `first` to `last` (exclusive).
   /// Twist that is not what the frames have is corrected.
   void start(const FrameArrays& frames_before, int before, const FrameArrays& frames_after, int after, int first, int last);
@@ -107,11 +112,11 @@ class RodJoints {
   const SymmetricArray& stiffness() const { return is_exact_ ? exact_stiffness : convex_stiffness; }
   double start_twist(int joint) const { return twist_[joint]; }    ///< [rad]
   double end_twist(int joint) const { return end_twist_[joint]; }  ///< [rad]
-  /// [rad] By which springs have slid at the start, and since what they remember.
+  /// [rad] By which springs have slid at the start, and since what they remember, but for what is brought.
   AboutAxes start_yielded(int joint) const { return yielding_[joint].slid; }
   AboutAxes start_slipped(int joint) const { return friction_[joint].slid; }
-  AboutAxes yielded(int joint) const { return end_yielded_[joint] - at_once_[joint].remembers_yielded; }
-  AboutAxes slipped(int joint) const { return end_slipped_[joint] - at_once_[joint].remembers_slipped; }
+  AboutAxes yielded(int joint) const { return end_yielded_[joint] - memory_[joint].yielded; }
+  AboutAxes slipped(int joint) const { return end_slipped_[joint] - memory_[joint].slipped; }
 
   std::vector<double> bending_loss, twisting_loss;  ///< [J] what damping takes in the substep
   std::vector<double> sliding_loss;                 ///< [J] and what springs that slide do; not set where none does
@@ -122,10 +127,11 @@ class RodJoints {
   SymmetricArray convex_stiffness, exact_stiffness;
 
  private:
-  /// What was bent at once, not by motion, slides at the start.
-  struct SlidAtOnce {
-    AboutAxes remembers_yielded, remembers_slipped;  ///< [rad] by which springs had slid before that
-    double loss = 0;                                 ///< [J]
+  /// What springs had slid by before, what has been brought since [rad], and what was lost [J] as those that were bent at once,
+  /// not by motion, slid at the start.
+  struct Memory {
+    AboutAxes yielded, slipped, brought_yielded, brought_slipped;
+    double loss = 0;
   };
 
   void slide_at_once(int joint, const AboutAxes& strain);
@@ -147,7 +153,7 @@ class RodJoints {
   std::vector<double> end_twist_;  // [rad]
   // Where springs slide
   std::vector<SlidingSpring> yielding_, friction_;
-  std::vector<SlidAtOnce> at_once_;
+  std::vector<Memory> memory_;
   std::vector<AboutAxes> end_yielded_, end_slipped_;  // of the present iterate
 };
 
