@@ -331,10 +331,6 @@ TEST(KeptTensions, AreRefusedWithAllReasons) {
       EXPECT_NE(refused.message.find(part), std::string::npos) << refused.message;
     EXPECT_NE(world.apply(kept(bad)).message.find("(from 0 to 1e+09)"), std::string::npos);
   }
-  const std::string loose =
-      "at_end: true; allowed: false, nothing holds the end of cable cable, and a winch there has no tension";
-  EXPECT_EQ(world.apply(edit::SetTension{0, true, 1, 1, 1, 2}).message, loose);
-  EXPECT_EQ(world.apply(edit::SetLength{0, true, 3, 1, 5}).message, loose);
   EXPECT_EQ(world.hash(), before);
 }
 
@@ -349,8 +345,6 @@ TEST(KeptTensions, EndWhereNothingHoldsTheWinch) {
     const double out = length(world);
     ASSERT_TRUE(world.apply(edit::Unpin{"winch"}).ok);
     EXPECT_FALSE(world.view_winch(0));
-    EXPECT_EQ(world.apply(kept(0)).message,
-              "at_end: false; allowed: none, nothing holds an end of cable cable, and a winch there has no tension");
     for (int i = 0; i < 200; ++i) ASSERT_EQ(world.step(initial_frames(scene)).status, Status::ok) << i;
     EXPECT_EQ(length(world), out);
     EXPECT_LT(unaccounted(world, gravity * mass(world) * 2), 1e-6);

@@ -50,16 +50,6 @@ struct Problems {
   void require(bool holds, const char* field, double value, const std::string& allowed) {
     if (!holds) add(std::string(field) + ": " + number_text(value) + "; " + allowed);
   }
-  /// A winch that goes by its tension needs something to pull at: it has no inertia.
-  void require_held_end(const State& state, int index, bool at_end) {
-    const auto is_held = [&](bool end) { return is_attached(state, index, end ? state.cables[index].state.segments() : 0); };
-    if (is_held(at_end)) return;
-    add(std::string("at_end: ") + (at_end ? "true" : "false") + "; allowed: " +
-        (!is_held(!at_end) ? "none, nothing holds an end of cable "
-         : at_end          ? "false, nothing holds the end of cable "
-                           : "true, nothing holds the start of cable ") +
-        state.cables[index].model->name + ", and a winch there has no tension");
-  }
 };
 
 /// [m/s] At which cable comes through a winch that gives way: where it cannot stretch, as fast as the nodes beside the winch
@@ -136,7 +126,6 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
   CableProgress& s = state.cable_progress[index];
   const double fastest = fastest_winch(index), longest = longest_cable(index);
   Problems problems;
-  if (max_tension != 0) problems.require_held_end(state, index, at_end);
   problems.require(length > 0 && length <= longest, "length", length,
                    "must be above 0, and at most " + rounded_bound_text(longest, -1) + " m, as limits.segments allows");
   problems.require(speed > 0 && speed <= fastest, "speed", speed,
@@ -172,7 +161,6 @@ EditResult World::Implementation::apply(const edit::SetTension& change) {
   const CableModel& model = *state.cables[index].model;
   const double fastest = fastest_winch(index);
   Problems problems;
-  problems.require_held_end(state, index, at_end);
   problems.require(winch_tension.contains(tension), "tension", tension, "allowed: " + winch_tension.text("N"));
   problems.require(max_speed > 0 && max_speed <= fastest, "max_speed", max_speed,
                    "must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
