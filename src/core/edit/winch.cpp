@@ -234,7 +234,7 @@ void World::Implementation::plan_drive_step(int index) {
   SimulatedCable& cable = state.cables[index];
   if (!s.drive->is_winch() && cable.state.rest_lengths[s.drive->segment] <= closing_distance * cable.model->segment_length) {
     close_joint(index);
-    account_for_blow(index);
+    account_for_edit(follow_energy_of_cable(index, state), state.ledger.balance);
     return;
   }
   plan_drive_of(index);
