@@ -115,7 +115,7 @@ REFUSED = [
     ('tune', {'contact_friction': 0.1}, SceneError, 'contact_friction'),
     ('tune', {'gravity': [0, 0, 1], 'materials': {'rope': {'friction': 1}}}, KeyError, 'materials: "rope"; allowed: wire'),
     ('tune', {'gravity': [0, 0, 1], 'materials': {'wire': {'friction': -1}}}, SceneError, 'tuning.wire_friction: -1'),
-    ('tune', {'materials': {'wire': {'axial_stiffness': 100}}}, SceneError, '"wire_axial_stiffness"'),
+    ('tune', {'materials': {'wire': {'axial_stiffness': 100}}}, SceneError, 'tuning.wire_axial_stiffness: 100; allowed: .inf'),
     ('tune', {'materials': {'wire': {'friction': [1, 2]}}}, ValueError, 'shape \\(2,\\); allowed: a number'),
 ]
 
