@@ -5,14 +5,13 @@ taken), and prints the tables of doc/real_cables_measured.md."""
 import glob
 import json
 import os
-import subprocess
 import sys
-import time
 
 import numpy as np
 import yaml
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+from fitted import fitted  # noqa: E402
 from recording import Recording  # noqa: E402
 
 GIVEN_ROWS = 2
@@ -36,22 +35,13 @@ def harness(meta):
 
 
 def fit(programs, name, meta, recordings, segments, work):
-    """Runs cable_fit, unless its report is there; the report, and how long [s] it took to fit and to cross-validate."""
-    report, seconds, description = (os.path.join(work, f'{name}.{kind}') for kind in ('json', 'seconds', 'harness.yaml'))
-    if not os.path.exists(seconds):
-        with open(description, 'w', encoding='utf-8') as file:
-            yaml.safe_dump(harness(meta), file)
-        began = time.monotonic()
-        subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--harness', description, '--segments', str(segments),
-                        '--output', os.path.join(work, f'{name}.yaml'), '--report', report,
-                        '--predictions', os.path.join(work, f'predicted_{name}')], check=True, stdout=subprocess.DEVNULL)
-        with open(seconds, 'w', encoding='utf-8') as file:
-            json.dump(time.monotonic() - began, file)
-    with open(report, encoding='utf-8') as file, open(seconds, encoding='utf-8') as taken:
-        found = json.load(file)
-        if found['segments'] != segments:
-            sys.exit(f'{report}: of {found["segments"]} segments, asked for are {segments}; allowed: another WORK, or the same number')
-        return found, json.load(taken)
+    """The report and its cross-validation, and how long [s] it took."""
+    base = os.path.join(work, name)
+    with open(f'{base}.harness.yaml', 'w', encoding='utf-8') as file:
+        yaml.safe_dump(harness(meta), file)
+    arguments = ['--harness', f'{base}.harness.yaml', '--output', f'{base}.yaml',
+                 '--predictions', os.path.join(work, f'predicted_{name}')]
+    return fitted(programs, recordings, arguments, base, segments)
 
 
 def shifted(meta, measured):

@@ -7,7 +7,6 @@ import json
 import os
 import subprocess
 import sys
-import time
 
 import matplotlib
 matplotlib.use('Agg')
@@ -16,6 +15,7 @@ import numpy as np  # noqa: E402
 import yaml  # noqa: E402
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), '..'))
+from fitted import fitted  # noqa: E402
 from recording import Recording  # noqa: E402
 
 # Mean absolute errors [cm] over 5 s of the learned model that was published with the recordings (arXiv 2406.05931).
@@ -26,21 +26,11 @@ MATERIAL = ('bending stiffness [N m²]', 'bending damping [N m² s]', 'drag [kg/
 
 
 def fit(programs, cable, recordings, segments, work):
-    """Runs cable_fit, unless its report is there; the report, and how long [s] it took to fit both lines and to cross-validate."""
-    report, seconds = (os.path.join(work, f'dlo{cable}.{kind}') for kind in ('json', 'seconds'))
-    if not os.path.exists(seconds):
-        began = time.monotonic()
-        subprocess.run([os.path.join(programs, 'cable_fit'), *recordings, '--name', f'dlo{cable}', '--segments', str(segments),
-                        '--output', os.path.join(work, f'dlo{cable}.yaml'),
-                        '--centre-line', os.path.join(work, f'dlo{cable}_centre_line.yaml'), '--report', report,
-                        '--predictions', os.path.join(work, f'predicted{cable}')], check=True, stdout=subprocess.DEVNULL)
-        with open(seconds, 'w', encoding='utf-8') as file:
-            json.dump(time.monotonic() - began, file)
-    with open(report, encoding='utf-8') as file, open(seconds, encoding='utf-8') as taken:
-        found = json.load(file)
-        if found['segments'] != segments:
-            sys.exit(f'{report}: of {found["segments"]} segments, asked for are {segments}; allowed: another WORK, or the same number')
-        return found, json.load(taken)
+    """The report of both lines and their cross-validation, and how long [s] it took."""
+    base = os.path.join(work, f'dlo{cable}')
+    arguments = ['--name', f'dlo{cable}', '--output', f'{base}.yaml', '--centre-line', f'{base}_centre_line.yaml',
+                 '--predictions', os.path.join(work, f'predicted{cable}')]
+    return fitted(programs, recordings, arguments, base, segments)
 
 
 def real_time_factor(programs, cable, recording, work):

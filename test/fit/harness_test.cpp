@@ -65,36 +65,40 @@ TEST(HarnessInput, FlickerOfHeldMarkersIsGoneAndOthersAreAsRecorded) {
   }
 }
 
+/// A harness as it is measured on a recording, of a material that is guessed.
+struct Guess {
+  explicit Guess(const Recording& recording) : inputs{harness_input(known_markers(), recording)} {
+    settings.harness = known_markers();
+    settings.segments = 16;
+    measure_harness({recording}, inputs, {0}, settings);
+    measure_branches(inputs, {0}, settings);
+    values = first_harness_guess(settings, 2e-2, 1e-3);
+  }
+  Prediction predict(const Recording& input) const { return predict_harness(settings, settings.segments, values, input); }
+
+  std::vector<Smoothed> inputs;
+  HarnessSettings settings;
+  std::vector<double> values;
+};
+
 TEST(HarnessPrediction, KnowsNothingOfFreeMarkersBehindTheSecondRow) {
   const Recording recording = synthetic_harness_recording(1, 0.5);
   Recording other = recording;
   for (int row = 2; row < other.rows(); ++row)
     for (const int marker : {2, 3, 4, 5, 8, 9, 10}) other.markers[row][marker] += Vector3(0.1, 0.2, 0.3);
-  HarnessSettings settings;
-  settings.harness = known_markers();
-  settings.segments = 16;
-  const std::vector<Smoothed> inputs{harness_input(settings.harness, recording)};
-  measure_harness({recording}, inputs, {0}, settings);
-  measure_branches(inputs, {0}, settings);
-  const std::vector<double> values = first_harness_guess(settings, 2e-2, 1e-3);
-  const Prediction is = predict_harness(settings, 16, values, inputs[0].recording);
-  EXPECT_EQ(is.positions, predict_harness(settings, 16, values, harness_input(settings.harness, other).recording).positions);
+  const Guess guess(recording);
+  EXPECT_EQ(guess.predict(guess.inputs[0].recording).positions,
+            guess.predict(harness_input(known_markers(), other).recording).positions);
 }
 
 TEST(HarnessPrediction, MarkerThatJumpsBetweenTheFirstRowsDoesNotThrowTheCable) {
   const Recording recording = synthetic_harness_recording(0, 0.3);
-  HarnessSettings settings;
-  settings.harness = known_markers();
-  settings.segments = 16;
-  const std::vector<Smoothed> inputs{harness_input(settings.harness, recording)};
-  measure_harness({recording}, inputs, {0}, settings);
-  measure_branches(inputs, {0}, settings);
-  const std::vector<double> values = first_harness_guess(settings, 2e-2, 1e-3);
-  const Prediction calm = predict_harness(settings, 16, values, inputs[0].recording);
+  const Guess guess(recording);
+  const Prediction calm = guess.predict(guess.inputs[0].recording);
   for (const int marker : {4, 10}) {
-    Recording jumps = inputs[0].recording;
+    Recording jumps = guess.inputs[0].recording;
     jumps.markers[1][marker] += 0.01 * (jumps.markers[0][marker] - jumps.markers[0][marker - 1]).normalized();
-    const Prediction thrown = predict_harness(settings, 16, values, jumps);
+    const Prediction thrown = guess.predict(jumps);
     for (int row = 0; row < recording.rows(); ++row)
       for (int i = 0; i < recording.marker_count(); ++i)
         EXPECT_LT((thrown.positions[row][i] - calm.positions[row][i]).norm(), 0.005) << marker << " " << row << " " << i;

@@ -2,6 +2,7 @@
 #include <string>
 #include <utility>
 
+#include "edit/problems.h"
 #include "guide/node_passing.h"
 #include "guide/side.h"
 #include "rod/initial_shape.h"
@@ -23,23 +24,6 @@ constexpr double most_let_through = 0.5;
 constexpr double nearly_straight = 3e-4;
 /// As of what begins.
 constexpr double most_strain = 1e-3, most_elastic_strain = 0.02;
-
-/// Lines of what is wrong. Where several things are set, each is named.
-class Problems {
- public:
-  explicit Problems(bool names) : names_(names) {}
-  void of(const std::string& name) { prefix_ = names_ ? name + "." : ""; }
-  void add(const std::string& text) { text_ += (text_.empty() ? "" : "\n") + prefix_ + text; }
-  void check_vector(const std::string& field, const Vector3& vector) {
-    const std::string problem = vector_problem(prefix_ + field, vector, coordinate, "");
-    if (!problem.empty()) text_ += (text_.empty() ? "" : "\n") + problem;
-  }
-  const std::string& text() const { return text_; }
-
- private:
-  bool names_;
-  std::string prefix_, text_;
-};
 
 /// Of vectors for each node [m], [m/s].
 void check_nodes(const std::string& field, const std::optional<std::vector<Vector3>>& vectors, const CableState& cable,
@@ -259,7 +243,7 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
                     " cannot go through as far: something that it bears or that holds it is in the way, or it is straight");
   for (const edit::SetState::OfCable& of : set.cables) {
     SimulatedCable& cable = state.cables[of.cable];
-    Problems problems(false);
+    Problems problems;
     check_nodes("positions", of.positions, cable.state, problems);
     check_nodes("velocities", of.velocities, cable.state, problems);
     if (!problems.text().empty()) return refuse(problems.text());

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "chain/direction.h"
+#include "edit/problems.h"
 #include "guide/node_passing.h"
 #include "rod/unresolved_motion.h"
 #include "scene/scene_size.h"
@@ -42,15 +43,6 @@ void add_material_motion(const LengthDrive& drive, double side, CableState& cabl
   const Vector3 along = segment_direction(cable, i);
   cable.velocities[node] += (node == 0 ? side : -side) * drive.fed_rate() * along;
 }
-
-/// What is wrong with a request, a line each.
-struct Problems {
-  std::string text;
-  void add(const std::string& problem) { text += (text.empty() ? "" : "\n") + problem; }
-  void require(bool holds, const char* field, double value, const std::string& allowed) {
-    if (!holds) add(std::string(field) + ": " + number_text(value) + "; " + allowed);
-  }
-};
 
 /// [m/s] At which cable comes through a winch that gives way: where it cannot stretch, as fast as the nodes beside the winch
 /// part; where it can, and waves shake them, as in the mean of the last step.
@@ -132,7 +124,7 @@ EditResult World::Implementation::apply(const edit::SetLength& change) {
                    "must be above 0, and at most " + rounded_bound_text(fastest, -1) + " m/s");
   problems.require(winch_tension.contains(max_tension), "max_tension", max_tension,
                    "allowed: " + winch_tension.text("N") + "; 0: none");
-  if (!problems.text.empty()) return refused(problems.text);
+  if (!problems.text().empty()) return refused(problems.text());
 
   LengthDrive drive = winch_at(index, at_end, speed);
   drive.left = length - (cable.length() + drive.debt);
@@ -167,7 +159,7 @@ EditResult World::Implementation::apply(const edit::SetTension& change) {
   problems.require(not_negative.contains(min_length), "min_length", min_length, "allowed: " + not_negative.text("m"));
   problems.require(max_length > 0 && !(max_length < min_length), "max_length", max_length,
                    "must be above 0, and at least min_length, or .inf");
-  if (!problems.text.empty()) return refused(problems.text);
+  if (!problems.text().empty()) return refused(problems.text());
 
   CableProgress& s = state.cable_progress[index];
   LengthDrive drive = winch_at(index, at_end, max_speed);

@@ -28,14 +28,33 @@ double student_quantile(int degrees) {
   return degrees <= static_cast<int>(std::size(student)) ? student[degrees - 1] : normal_quantile;
 }
 
-}  // namespace
-
 int parts_of_each(int recordings) {
   return (fewest_parts + recordings - 1) / recordings;
 }
 
+}  // namespace
+
+Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
+  return information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
+}
+
+Eigen::MatrixXd inverse_scaled(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale) {
+  return (scale.asDiagonal() * information * scale.asDiagonal()).completeOrthogonalDecomposition().pseudoInverse();
+}
+
+void add_scatter(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& differences, int recordings, Eigen::MatrixXd& scatter) {
+  const int parts = parts_of_each(recordings);
+  for (int part = 0; part < parts; ++part) {
+    const Eigen::Index first = differences.size() * part / parts, last = differences.size() * (part + 1) / parts;
+    const Eigen::VectorXd gradient =
+        slopes.middleRows(first, last - first).transpose() * differences.segment(first, last - first);
+    scatter += gradient * gradient.transpose() * parts * recordings / (parts * recordings - 1.0);
+  }
+}
+
 std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, const std::vector<double>& values,
-                                      const Eigen::MatrixXd& by_noise, const Eigen::MatrixXd& by_scatter, int degrees) {
+                                      const Eigen::MatrixXd& by_noise, const Eigen::MatrixXd& by_scatter, int recordings) {
+  const double quantile_of_parts = student_quantile(parts_of_each(recordings) * recordings - 1);
   std::vector<Confidence> result;
   for (std::size_t i = 0; i < parameters.size(); ++i) {
     const Parameter& parameter = parameters[i];
@@ -44,7 +63,7 @@ std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, 
       return quantile * std::sqrt(std::max(covariance(k, k), 0.0));
     };
     Confidence& confidence = result.emplace_back();
-    const double random = std::max(half(by_noise, normal_quantile), half(by_scatter, student_quantile(degrees)));
+    const double random = std::max(half(by_noise, normal_quantile), half(by_scatter, quantile_of_parts));
     confidence.half_width = random > 0 ? std::hypot(random, normal_quantile * parameter.unresolved) : infinity;
     confidence.told = parameter.logarithmic
                           ? confidence.half_width < widest_logarithmic && values[i] > parameter.lowest + near_limit &&
@@ -62,25 +81,16 @@ std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std:
   Eigen::MatrixXd information = prior.slopes.transpose() * prior.slopes;
   // The prior is one more thing known, as uncertain as it says.
   Eigen::MatrixXd scatter = information;
-  const int count = static_cast<int>(all.size()), parts = parts_of_each(count);
+  const int count = static_cast<int>(all.size());
   for (const RecordingDifferences& recording : linearize(problem, all, values, true)) {
     information += recording.slopes.transpose() * recording.slopes;
-    for (int part = 0; part < parts; ++part) {
-      const Eigen::Index first = recording.values.size() * part / parts, last = recording.values.size() * (part + 1) / parts;
-      const Eigen::VectorXd gradient =
-          recording.slopes.middleRows(first, last - first).transpose() * recording.values.segment(first, last - first);
-      scatter += gradient * gradient.transpose() * parts * count / (parts * count - 1.0);
-    }
+    add_scatter(recording.slopes, recording.values, count, scatter);
   }
-  // Parameters differ in scale by orders of magnitude.
-  const Eigen::VectorXd scale = information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-  const Eigen::MatrixXd inverse =
-      scale.asDiagonal() *
-      (scale.asDiagonal() * information * scale.asDiagonal()).completeOrthogonalDecomposition().pseudoInverse() *
-      scale.asDiagonal();
+  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_scaled(information, scale) * scale.asDiagonal();
   const Eigen::MatrixXd covariance = inverse * scatter * inverse;
   return confidence_of(problem.parameters, values, Eigen::MatrixXd::Zero(covariance.rows(), covariance.cols()), covariance,
-                       parts * count - 1);
+                       count);
 }
 
 }  // namespace verlet_cable::cable_fit

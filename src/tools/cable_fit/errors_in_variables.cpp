@@ -271,14 +271,6 @@ class Search {
     return result;
   }
 
-  static Eigen::VectorXd scale_of(const Eigen::MatrixXd& information) {
-    // Parameters differ in scale by orders of magnitude.
-    return information.diagonal().cwiseMax(1e-30).cwiseSqrt().cwiseInverse();
-  }
-  static Eigen::MatrixXd inverse_scaled(const Eigen::MatrixXd& information, const Eigen::VectorXd& scale) {
-    return (scale.asDiagonal() * information * scale.asDiagonal()).completeOrthogonalDecomposition().pseudoInverse();
-  }
-
   /// One step. What noise does not explain is an error of the model: alike of so many neighbours, it counts the more.
   bool improve() {
     variance_ = mean_variance_;
@@ -310,23 +302,17 @@ class Search {
     // The prior is one more thing known, as uncertain as it says.
     Eigen::MatrixXd scatter = information;
     const int count = static_cast<int>(recordings());
-    const int parts = parts_of_each(count);
     for (std::size_t i = 0; i < recordings(); ++i) {
       const Eigen::MatrixXd& slopes = slopes_[i];
       const Eigen::MatrixXd known = inputs_[i].precision();
       const Eigen::MatrixXd coupling = input_slopes_[i].transpose() * slopes / variance_;
       const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance_ + known);
       information += slopes.transpose() * slopes / variance_ - coupling.transpose() * solver.solve(coupling);
-      for (int part = 0; part < parts; ++part) {
-        const Eigen::Index first = differences_[i].size() * part / parts, last = differences_[i].size() * (part + 1) / parts;
-        const Eigen::VectorXd gradient =
-            slopes.middleRows(first, last - first).transpose() * differences_[i].segment(first, last - first) / variance_;
-        scatter += gradient * gradient.transpose() * parts * count / (parts * count - 1.0);
-      }
+      add_scatter(slopes, differences_[i] / variance_, count, scatter);
     }
     const Eigen::VectorXd scale = scale_of(information);
     const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_scaled(information, scale) * scale.asDiagonal();
-    return confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, parts * count - 1);
+    return confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, count);
   }
 
   /// The parameters, with what the noise of the hands' directions does to them beyond the first order.
