@@ -49,6 +49,8 @@ void WorldMachine::act() {
       &Machine::set_obstacle,
       &Machine::remove_obstacle,
       &Machine::tune,
+      &Machine::apply_load,
+      &Machine::set_state,
   };
   (this->*input_.one_of(acts))();
   check_world(world_);

@@ -46,6 +46,8 @@ class WorldMachine {
   void set_obstacle();
   void remove_obstacle();
   void tune();
+  void apply_load();
+  void set_state();
 
   void step();
   void apply(const Edit& edit);
@@ -61,6 +63,9 @@ class WorldMachine {
   int any_frame();
   int any_node(const BodyId& body);
   Vector3 place_of(const BodyId& body, int node) const;
+  std::vector<Vector3> any_vectors(const std::vector<Vector3>& near, double most_away);
+  edit::SetState::OfCable any_cable_state();
+  edit::SetState::OfBody any_body_state();
   std::vector<std::string> attachment_names() const;
 
   Arbitrary& input_;

@@ -172,7 +172,7 @@ void WorldMachine::tune() {
   for (NamedMaterial& named : tuned.materials) {
     MaterialDesc& material = named.material;
     const double stiffness = input_.positive(1e-5, 0.1);
-    switch (input_.below(6)) {
+    switch (input_.below(8)) {
       case 0:
         material.bending_stiffness = BendingStiffness(stiffness);
         break;
@@ -187,6 +187,13 @@ void WorldMachine::tune() {
         break;
       case 4:
         material.drag = 10 * stiffness;
+        break;
+      case 5:
+        material.yield_curvature = 1000 * stiffness;
+        material.hardening = 10 * stiffness;
+        break;
+      case 6:
+        material.bending_friction = 0.1 * stiffness;
         break;
       default:
         material.radius = 0.1 * stiffness;
@@ -203,6 +210,62 @@ void WorldMachine::tune() {
     }
   };
   if (!on_both(is_taken_over)) require(world_.hash() == before, "refused tuning changes nothing");
+}
+
+void WorldMachine::apply_load() {
+  edit::ApplyLoad load;
+  if (input_.below(4) != 0) load.name = input_.one_of({"push", "pull"});
+  load.body = any_body();
+  load.node = any_node(load.body);
+  if (input_.flip()) load.force = input_.vector(input_.one_of({0.1, 10.0, 1000.0}));
+  if (load.body.is_rigid_body() || input_.is_odd()) {
+    if (input_.flip()) load.point = input_.vector(0.2);
+    if (input_.flip()) load.torque = input_.vector(1);
+    load.is_local = input_.flip();
+  }
+  if (input_.flip()) load.duration = input_.positive(1e-4, 0.1);
+  apply(load);
+}
+
+/// A vector for each of those, as far from it as that; oddly, one more.
+std::vector<Vector3> WorldMachine::any_vectors(const std::vector<Vector3>& near, double most_away) {
+  std::vector<Vector3> vectors = near;
+  const Vector3 all = input_.vector(most_away);
+  for (Vector3& vector : vectors) vector += all;
+  if (!vectors.empty() && input_.flip()) vectors[input_.below(static_cast<int>(vectors.size()))] += input_.vector(most_away);
+  if (input_.is_odd()) vectors.push_back(all);
+  return vectors;
+}
+
+edit::SetState::OfCable WorldMachine::any_cable_state() {
+  edit::SetState::OfCable change;
+  change.cable = any_cable();
+  const bool is_there = change.cable >= 0 && change.cable < static_cast<int>(world_.cables().size());
+  const CableState none, &cable = is_there ? world_.cables()[change.cable].state : none;
+  if (input_.flip()) change.positions = any_vectors(cable.positions, input_.one_of({0.001, 0.1, 2.0}));
+  if (input_.flip()) change.velocities = any_vectors(cable.velocities, input_.one_of({0.01, 1.0, 10.0}));
+  return change;
+}
+
+edit::SetState::OfBody WorldMachine::any_body_state() {
+  edit::SetState::OfBody change;
+  change.body = input_.index(world_.bodies().size());
+  const bool is_there = change.body >= 0 && change.body < static_cast<int>(world_.bodies().size());
+  const Vector3 now = is_there ? place_of(rigid_body_id(change.body), 0) : Vector3::Zero();
+  if (input_.flip()) change.pose = input_.pose(now, input_.one_of({0.001, 0.1, 1.0}));
+  if (input_.flip()) change.velocity = input_.vector(4);
+  if (input_.flip()) change.angular_velocity = input_.vector(10);
+  return change;
+}
+
+void WorldMachine::set_state() {
+  edit::SetState change;
+  const int kinds = 1 + input_.below(7);
+  if (kinds & 1) change.cables.push_back(any_cable_state());
+  if (kinds & 2) change.bodies.push_back(any_body_state());
+  if (kinds & 4) change.guides.push_back({input_.index(world_.guides().size()), input_.positive(0.01, 1)});
+  if (input_.is_odd()) change.cables.push_back(any_cable_state());
+  apply(change);
 }
 
 }  // namespace verlet_cable::fuzz

@@ -17,6 +17,7 @@ SUBJECTS = {
     'robot': ['scene/robot_model.cpp', 'scene/xml_outline.cpp'],
     'scene': ['scene', 'core'],
     'world': ['core'],
+    'world_file': ['scene/world_file.cpp', 'core/world/state_bytes.cpp', 'python/simulation/driven_world.cpp'],
 }
 
 

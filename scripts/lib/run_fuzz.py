@@ -17,7 +17,7 @@ MEMORY_MB = 4096
 MOST_BYTES = 20000
 # Of files whose lines are all alike: some of them are enough, and are read several times as often.
 MOST_BYTES_OF_LINES = 4000
-# Of worlds, whose inputs have no format: enough for some tens of calls.
+# Of worlds and saved worlds, whose inputs have no format: enough for some tens of calls.
 WORLD_SEEDS = 20
 WORLD_SEED_BYTES = 600
 # How often a place is reached says little of a simulation: inputs with more iterations would pile up. To weigh inputs by all that
@@ -59,7 +59,7 @@ def fill_corpus(target, checkout, corpus):
     corpus.mkdir(parents=True, exist_ok=True)
     for path in seeds(target, checkout):
         (corpus / ('seed_' + path.name)).write_bytes(shorter(path.read_bytes(), most_bytes(target)))
-    if target == 'world':
+    if target in ('world', 'world_file'):
         for seed in range(WORLD_SEEDS):
             content = random.Random(seed).getrandbits(8 * WORLD_SEED_BYTES)
             (corpus / f'seed_{seed}').write_bytes(content.to_bytes(WORLD_SEED_BYTES, 'big'))

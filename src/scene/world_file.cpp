@@ -57,6 +57,7 @@ WorldFile read_parts(const SceneDesc& scene, ByteReader& bytes) {
   require_structure(scene, bytes);
   SceneDesc at_first = scene;
   set_numbers(bytes.read_text(), at_first);
+  if (const std::vector<std::string> errors = validate(at_first); !errors.empty()) refuse("of its scene, " + errors.front());
   WorldFile file{std::make_shared<const SceneDesc>(std::move(at_first)), World(scene), {}};
   file.world.restore(bytes.read_text());
   // Names and counts are in the numbers of cables and nets, too.
@@ -76,7 +77,10 @@ std::string write_world(const SceneDesc& scene_at_first, const World& world, con
   bytes.write_text(numbers_of(scene_at_first));
   bytes.write_text(world.save());
   bytes.write_text(frames);
-  std::string parts = bytes.take();
+  return sealed(bytes.take());
+}
+
+std::string sealed(const std::string& parts) {
   ByteWriter end;
   end(checksum(parts));
   return std::string(mark) + parts + end.take();

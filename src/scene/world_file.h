@@ -18,6 +18,9 @@ struct WorldFile {
 /// Bytes that say what they are, of which version, and of what kind of scene, and end with a checksum.
 std::string write_world(const SceneDesc& scene_at_first, const World& world, const std::string& frames);
 
+/// The parts of such bytes with what goes before and after them: what they are, and their checksum.
+std::string sealed(const std::string& parts);
+
 /// `scene`: like that of which the world was, but for numbers. Throws std::invalid_argument: "data: " and what is wrong with the
 /// bytes.
 WorldFile read_world(const SceneDesc& scene, const std::string& data);

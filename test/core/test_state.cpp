@@ -8,6 +8,7 @@
 #include "../support/nets.h"
 #include "../support/scenes.h"
 #include "../support/world_inspector.h"
+#include "verlet_cable/core/bytes.h"
 #include "world/implementation.h"
 #include "world/state_fields.h"
 
@@ -192,6 +193,20 @@ TEST(State, RefusesBytesThatAreNotItsOwn) {
   damaged.back() = static_cast<char>(damaged.back() ^ 1);
   EXPECT_THROW(world.restore(damaged), std::invalid_argument);
   EXPECT_EQ(world.hash(), before);
+}
+
+TEST(State, FlagsAreReadAsSetOrUnset) {
+  for (const int byte : {0, 1, 2, 255}) {
+    const char given = static_cast<char>(byte);
+    ByteReader bytes({&given, 1});
+    bool flag = false;
+    if (byte > 1) {
+      EXPECT_THROW(bytes(flag), std::invalid_argument) << byte;
+    } else {
+      bytes(flag);
+      EXPECT_EQ(flag, byte == 1);
+    }
+  }
 }
 
 TEST(State, EveryNumberOfTheModelIsHashed) {

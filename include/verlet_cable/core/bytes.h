@@ -34,7 +34,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter has written, in the same order. Throws std::invalid_argument where the bytes end before that.
+/// Reads what a ByteWriter has written, in the same order. Throws std::invalid_argument where the bytes end before that, or are none
+/// that it writes for a flag.
 class ByteReader {
  public:
   /// The bytes must outlive the reader.
@@ -43,7 +44,13 @@ class ByteReader {
   template <class Number>
   void operator()(Number& number) {
     static_assert(std::is_arithmetic_v<Number> || std::is_enum_v<Number>);
-    std::memcpy(&number, take(sizeof number).data(), sizeof number);
+    const char* first = take(sizeof number).data();
+    if constexpr (std::is_same_v<Number, bool>) {
+      if (*first != 0 && *first != 1) throw std::invalid_argument("a flag is neither set nor unset");
+      number = *first == 1;
+    } else {
+      std::memcpy(&number, first, sizeof number);
+    }
   }
   /// Of what is written with at least a byte each.
   std::size_t read_length() {
