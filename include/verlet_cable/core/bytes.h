@@ -34,8 +34,8 @@ class ByteWriter {
   std::string bytes_;
 };
 
-/// Reads what a ByteWriter has written, in the same order. Throws std::invalid_argument where the bytes end before that, or are none
-/// that it writes for a flag.
+/// Reads what a ByteWriter has written, in the same order. Throws std::invalid_argument where the bytes end before that, or are
+/// none that it writes for a flag.
 class ByteReader {
  public:
   /// The bytes must outlive the reader.
