@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <stdexcept>
 
 #include "pose_bytes.h"
 
@@ -37,12 +38,17 @@ FrameSource::FrameSource(const SceneDesc& scene, const Motion& motion) : jump_sp
   }
 }
 
-FrameSource::FrameSource(ByteReader& bytes) {
+FrameSource::FrameSource(ByteReader& bytes, std::size_t most_ids) {
+  const auto require_one_of = [](int index, std::size_t count) {
+    if (index < -1 || index >= static_cast<int>(count)) throw std::invalid_argument("a frame or link is not there");
+  };
   bytes(jump_speed_);
   bytes(ids_);
+  if (ids_ < 0 || static_cast<std::size_t>(ids_) > most_ids) throw std::invalid_argument("they are of other frames");
   frames_.resize(bytes.read_length());
   for (Frame& frame : frames_) {
     bytes(frame.id);
+    require_one_of(frame.id, ids_);
     std::vector<double> times;
     bytes.read_list(times);
     for (const double time : times) frame.track.add(time, read_pose(bytes));
@@ -53,9 +59,12 @@ FrameSource::FrameSource(ByteReader& bytes) {
   for (Link& link : links_) {
     link.name = bytes.read_text();
     bytes(link.frame);
+    require_one_of(link.frame, frames_.size());
     bytes(link.parent);
+    require_one_of(link.parent, static_cast<std::size_t>(&link - links_.data()));
     link.origin = read_pose(bytes);
     bytes(link.id);
+    require_one_of(link.id, ids_);
   }
 }
 

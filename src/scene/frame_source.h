@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 #include <vector>
@@ -18,8 +19,9 @@ using PosesById = std::map<int, Pose>;
 class FrameSource {
  public:
   FrameSource(const SceneDesc& scene, const Motion& motion);
-  /// As one that was written. Throws std::invalid_argument where the bytes end too early.
-  explicit FrameSource(ByteReader& bytes);
+  /// As one that was written. Throws std::invalid_argument where the bytes are none of a source with at most so many
+  /// frame ids.
+  FrameSource(ByteReader& bytes, std::size_t most_ids);
   void write(ByteWriter& bytes) const;
 
   /// One entry a frame id, with the velocities of the motions that begin then; all known, but for ids that are not of these

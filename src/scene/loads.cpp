@@ -1,6 +1,7 @@
 #include "verlet_cable/scene/loads.h"
 
 #include <algorithm>
+#include <stdexcept>
 
 #include "pose_bytes.h"
 #include "verlet_cable/core/name_list.h"
@@ -66,8 +67,9 @@ LoadPlayer::LoadPlayer(ByteReader& bytes) {
     row.torque = read_vector(bytes);
     bytes(row.line);
   }
-  if (!loads.empty()) loads_ = std::make_shared<const Loads>(std::move(loads));
   bytes(next_);
+  if (next_ > loads.size()) throw std::invalid_argument("there are fewer loads than were applied");
+  if (!loads.empty()) loads_ = std::make_shared<const Loads>(std::move(loads));
 }
 
 void LoadPlayer::write(ByteWriter& bytes) const {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cmath>
+#include <stdexcept>
+
 #include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/types.h"
 
@@ -9,9 +12,11 @@ inline void write_vector(const Vector3& vector, ByteWriter& bytes) {
   for (int axis = 0; axis < 3; ++axis) bytes(vector[axis]);
 }
 
+/// Throws std::invalid_argument where it is not finite.
 inline Vector3 read_vector(ByteReader& bytes) {
   Vector3 vector;
   for (int axis = 0; axis < 3; ++axis) bytes(vector[axis]);
+  if (!vector.allFinite()) throw std::invalid_argument("a vector is not finite");
   return vector;
 }
 
@@ -20,10 +25,13 @@ inline void write_pose(const Pose& pose, ByteWriter& bytes) {
   for (int k = 0; k < 4; ++k) bytes(pose.orientation.coeffs()[k]);
 }
 
+/// Throws std::invalid_argument where it is not finite, or its orientation is no rotation.
 inline Pose read_pose(ByteReader& bytes) {
+  constexpr double tolerance = 1e-6;
   Pose pose;
   pose.position = read_vector(bytes);
   for (int k = 0; k < 4; ++k) bytes(pose.orientation.coeffs()[k]);
+  if (!(std::abs(pose.orientation.norm() - 1) <= tolerance)) throw std::invalid_argument("an orientation is no rotation");
   return pose;
 }
 

@@ -43,8 +43,9 @@ void write_inputs(const BoundaryInputs& inputs, ByteWriter& bytes) {
   }
 }
 
-BoundaryInputs read_inputs(ByteReader& bytes) {
+BoundaryInputs read_inputs(ByteReader& bytes, std::size_t frames) {
   BoundaryInputs inputs(bytes.read_length());
+  if (inputs.size() != frames) throw std::invalid_argument("they are of other frames");
   for (FrameInput& input : inputs) {
     input.pose = read_pose(bytes);
     bytes(input.known);
@@ -99,9 +100,10 @@ std::string DrivenWorld::save() const {
 
 void DrivenWorld::read_frames(const std::string& frames) {
   ByteReader bytes(frames);
-  frames_ = std::make_shared<const FrameSource>(bytes);
-  inputs_ = read_inputs(bytes);
-  targets_ = read_inputs(bytes);
+  frames_ = std::make_shared<const FrameSource>(bytes, world_.frames().size());
+  const std::size_t count = frames_->at(0).size();
+  inputs_ = read_inputs(bytes, count);
+  targets_ = read_inputs(bytes, count);
   bytes(hash_of_start_);
   loads_ = LoadPlayer(bytes);
   all_loads_ = loads_.from_the_start();
@@ -110,12 +112,10 @@ void DrivenWorld::read_frames(const std::string& frames) {
   given_.resize(bytes.read_length());
   for (GivenPoses& given : given_) {
     bytes(given.frame);
-    const std::size_t count = bytes.read_length();
-    for (std::size_t k = 0; k < count; ++k) given.poses.push_back(read_pose(bytes));
-    const auto is_one_of = [&](const BoundaryInputs& inputs) {
-      return given.frame >= 0 && static_cast<std::size_t>(given.frame) < inputs.size();
-    };
-    if (count == 0 || !is_one_of(inputs_) || !is_one_of(targets_)) throw std::invalid_argument("a pose is of no frame");
+    const std::size_t poses = bytes.read_length();
+    for (std::size_t k = 0; k < poses; ++k) given.poses.push_back(read_pose(bytes));
+    if (poses == 0 || given.frame < 0 || static_cast<std::size_t>(given.frame) >= count)
+      throw std::invalid_argument("a pose is of no frame");
   }
 }
 
