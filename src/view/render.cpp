@@ -25,15 +25,17 @@ constexpr double least_gap = 2e-5, gap_of_depth = 1e-5;
 struct SurfaceLanes {
   std::array<Surface, rays> all;  ///< those that there are, each once
   int count = 0;
-  std::array<int, rays> of_ray;  ///< index into them; -1: nothing is seen
+  alignas(64) std::int64_t of_ray[rays];  ///< index into them; -1: nothing is seen
 
-  const Surface& operator[](int i) const { return all[static_cast<std::size_t>(of_ray[static_cast<std::size_t>(i)])]; }
-  bool is_seen(int i) const { return of_ray[static_cast<std::size_t>(i)] >= 0; }
+  const Surface& operator[](int i) const { return all[static_cast<std::size_t>(of_ray[i])]; }
+  bool is_seen(int i) const { return of_ray[i] >= 0; }
+  Viewers viewers(int index) const { return {of_ray, index}; }
 };
 
 /// What is known of the pixels of a square.
 struct Square {
-  std::array<std::size_t, rays> pixels;
+  std::size_t first_pixel;
+  bool is_whole;                // it is all in the image
   alignas(64) int valid[rays];  // -1 where there is a pixel, 0 where the image has ended
   VectorLanes direction;
   SurfaceLanes surfaces;
@@ -106,7 +108,8 @@ class Painter {
       });
     };
     for_all((model_.height + side - 1) / side, [this](int band) {
-      for (int column = 0; column < model_.width; column += side) paint_square(column, side * band);
+      Square square;
+      for (int column = 0; column < model_.width; column += side) paint_square(column, side * band, square);
     });
     if (wants_depth_ && (measures_ || images_.points)) for_all(model_.height, [this](int row) { finish_row(row); });
   }
@@ -117,8 +120,7 @@ class Painter {
     PlaneNumbers numbers;
   };
 
-  void paint_square(int first_column, int first_row) const {
-    Square square;
+  void paint_square(int first_column, int first_row, Square& square) const {
     find_lines(first_column, first_row, square);
     find_seen(square);
     if (measures_ || images_.rgb) passes_.find_cosines(square.direction, square.normal, square.cosine);
@@ -141,17 +143,28 @@ class Painter {
   }
 
   void find_lines(int first_column, int first_row, Square& square) const {
+    square.first_pixel = static_cast<std::size_t>(first_row) * model_.width + first_column;
+    square.is_whole = first_column + side <= model_.width && first_row + side <= model_.height;
     Lanes x, y;
     for (int i = 0; i < rays; ++i) {
-      const int column = std::min(first_column + i % side, model_.width - 1),
-                row = std::min(first_row + i / side, model_.height - 1);
-      square.valid[i] = first_column + i % side < model_.width && first_row + i / side < model_.height ? -1 : 0;
-      square.pixels[i] = static_cast<std::size_t>(row) * model_.width + column;
-      const auto& sight = lens_.sight(column, row);
+      const int column = first_column + i % side, row = first_row + i / side;
+      square.valid[i] = column < model_.width && row < model_.height ? -1 : 0;
+      const auto& sight = lens_.sight(std::min(column, model_.width - 1), std::min(row, model_.height - 1));
       x[i] = sight[0];
       y[i] = sight[1];
     }
     passes_.turn(axes_.data(), x, y, square.direction);
+  }
+
+  std::size_t pixel(const Square& square, int i) const {
+    return square.first_pixel + static_cast<std::size_t>(i / side) * model_.width + i % side;
+  }
+
+  /// Writes `value(i)` of each pixel into an image.
+  template <class Pixel, class Value>
+  void write(const Square& square, Pixel* image, const Value& value) const {
+    for (int i = 0; i < rays; ++i)
+      if (square.is_whole || square.valid[i]) image[pixel(square, i)] = value(i);
   }
 
   void find_seen(Square& square) const {
@@ -189,7 +202,7 @@ class Painter {
   void collect_surfaces(Square& square, const RTCRayHit16& query, const Lanes& nearest_plane) const {
     SurfaceLanes& surfaces = square.surfaces;
     surfaces.count = 0;
-    surfaces.of_ray.fill(-1);
+    std::fill_n(surfaces.of_ray, rays, -1);
     const auto is_plane = [&](int i) { return query.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID; };
     for_each(square, [&](int i) {
       if (is_plane(i) && nearest_plane[i] < 0) return;
@@ -212,64 +225,62 @@ class Painter {
 
   /// Depth is found anew, in double precision.
   void meet_surfaces(Square& square, const RTCRayHit16& query) const {
-    const SurfaceLanes& surfaces = square.surfaces;
-    const auto has = [&](Surface::Form form) {
-      return std::any_of(surfaces.all.begin(), surfaces.all.begin() + surfaces.count,
-                         [&](const Surface& surface) { return surface.form == form; });
-    };
     Lanes about;
     for (int i = 0; i < rays; ++i) about[i] = query.ray.tfar[i];
-    if (has(Surface::Form::round)) {
-      RoundLanes lanes = {};
-      for_each_seen(square, [&](int i) {
-        if (surfaces[i].form != Surface::Form::round) return;
-        const RoundLine& line = *surfaces[i].line;
-        set(lanes.start, i, line.start() - eye_);
-        set(lanes.axis, i, line.axis());
-        lanes.radius[i] = line.radius();
-      });
-      passes_.meet_round(lanes, square.direction, about, square.t, square.normal);
+    square.t = about;
+    square.normal = {};
+    bool any_round = false;
+    for (int k = 0; k < square.surfaces.count; ++k) {
+      const Surface& surface = square.surfaces.all[k];
+      const Viewers viewers = square.surfaces.viewers(k);
+      switch (surface.form) {
+        case Surface::Form::flat:
+          passes_.meet_flat(surface.numbers, viewers, square.direction, about, square.t, square.normal);
+          break;
+        case Surface::Form::round:
+          any_round = true;
+          break;
+        case Surface::Form::cylinder:
+          for (int i = 0; i < rays; ++i)
+            if (viewers.has(i)) meet_cylinder_of(*surface.part, i, square);
+          break;
+      }
     }
-    if (has(Surface::Form::flat)) {
-      FlatLanes lanes = {};
-      for_each_seen(square, [&](int i) {
-        if (surfaces[i].form != Surface::Form::flat) return;
-        set(lanes.normal, i, surfaces[i].normal);
-        lanes.height[i] = surfaces[i].height;
-      });
-      Lanes t;
-      VectorLanes normal;
-      passes_.meet_flat(lanes, square.direction, about, t, normal);
-      for_each_seen(square, [&](int i) {
-        if (surfaces[i].form != Surface::Form::flat) return;
-        square.t[i] = t[i];
-        set(square.normal, i, vector_of(normal, i));
-      });
+    if (any_round) meet_lines(square, about);
+  }
+
+  void meet_lines(Square& square, const Lanes& about) const {
+    LineLanes lines = {};
+    for (int i = 0; i < rays; ++i) {
+      lines.radius[i] = 0;
+      if (!square.surfaces.is_seen(i) || square.surfaces[i].form != Surface::Form::round) continue;
+      const RoundLine& line = *square.surfaces[i].line;
+      set(lines.start, i, line.start() - eye_);
+      set(lines.axis, i, line.axis());
+      lines.radius[i] = line.radius();
     }
-    if (has(Surface::Form::cylinder))
-      for_each_seen(square, [&](int i) {
-        if (surfaces[i].form != Surface::Form::cylinder) return;
-        const PlacedPart& part = *surfaces[i].part;
-        const auto& cylinder = std::get<CylinderShape>(part.shape);
-        const Ray ray{eye_, vector_of(square.direction, i)};
-        Vector3 normal = part.axes.transpose() * -ray.direction.normalized();
-        square.t[i] = meet_cylinder(cylinder.radius, 0.5 * cylinder.length, part.inside(ray), 0, normal).value_or(about[i]);
-        set(square.normal, i, part.axes * normal);
-      });
+    passes_.meet_round(lines, square.direction, about, square.t, square.normal);
+  }
+
+  void meet_cylinder_of(const PlacedPart& part, int i, Square& square) const {
+    const auto& cylinder = std::get<CylinderShape>(part.shape);
+    const Ray ray{eye_, vector_of(square.direction, i)};
+    Vector3 normal = part.axes.transpose() * -ray.direction.normalized();
+    square.t[i] = meet_cylinder(cylinder.radius, 0.5 * cylinder.length, part.inside(ray), 0, normal).value_or(square.t[i]);
+    set(square.normal, i, part.axes * normal);
   }
 
   void write_depth(const Square& square) const {
-    for_each(square, [&](int i) {
-      const bool has_depth = square.surfaces.is_seen(i) && (measures_ || square.t[i] >= model_.near);
-      true_depth_[square.pixels[i]] = has_depth ? static_cast<float>(square.t[i]) : std::numeric_limits<float>::quiet_NaN();
-      if (measures_) cosine_[square.pixels[i]] = static_cast<float>(square.cosine[i]);
-    });
+    constexpr float none = std::numeric_limits<float>::quiet_NaN();
+    const double nearest = measures_ ? 0 : model_.near;
+    write(square, true_depth_,
+          [&](int i) { return square.surfaces.is_seen(i) && square.t[i] >= nearest ? static_cast<float>(square.t[i]) : none; });
+    if (measures_) write(square, cosine_.data(), [&](int i) { return static_cast<float>(square.cosine[i]); });
   }
 
   void write_mask(const Square& square) const {
-    for_each(square, [&](int i) {
-      images_.mask[square.pixels[i]] = static_cast<std::uint16_t>(square.surfaces.is_seen(i) ? square.surfaces[i].thing + 1 : 0);
-    });
+    write(square, images_.mask,
+          [&](int i) { return static_cast<std::uint16_t>(square.surfaces.is_seen(i) ? square.surfaces[i].thing + 1 : 0); });
   }
 
   /// Where something is between what is seen and a place from the eye, or, otherwise, in that direction. `wanted`: -1 for those
@@ -302,65 +313,72 @@ class Painter {
       if (towards > 0)
         wanted[i] = -1;
       else
-        cosine_[square.pixels[i]] = -1;
+        cosine_[pixel(square, i)] = -1;
     });
     bool hidden[rays];
     find_hidden(square, wanted, second_eye_, true, hidden);
     for_each(square, [&](int i) {
-      if (hidden[i]) cosine_[square.pixels[i]] = -1;
+      if (hidden[i]) cosine_[pixel(square, i)] = -1;
     });
   }
 
   void write_colors(const Square& square) const {
-    LightLanes lanes = {};
-    for_each_seen(square, [&](int i) {
-      const Paint& paint = *square.surfaces[i].paint;
-      set(lanes.color, i, paint.color);
-      set(lanes.second_color, i, paint.second_color);
-      lanes.shininess[i] = paint.look.shininess;
-    });
-    find_lit(square, lanes.is_lit);
-    find_patterns(square, lanes.second);
-    int steps[3 * rays];
+    Lanes is_lit, second;
+    find_lit(square, is_lit);
+    find_patterns(square, second);
+    int steps[3 * rays] = {};
     const LightNumbers light{{stage_.to_sun.x(), stage_.to_sun.y(), stage_.to_sun.z()}, stage_.drawing.light.ambient};
-    passes_.find_light(light, lanes, square.direction, square.normal, steps);
+    // Segments of a cable have one paint.
+    std::array<const Paint*, rays> paints;
+    int count = 0;
+    alignas(64) std::int64_t of_ray[rays];
+    for (int i = 0; i < rays; ++i) {
+      const Paint* paint = square.surfaces.is_seen(i) ? square.surfaces[i].paint : nullptr;
+      of_ray[i] = -1;
+      if (!paint) continue;
+      of_ray[i] = std::find(paints.begin(), paints.begin() + count, paint) - paints.begin();
+      if (of_ray[i] == count) paints[count++] = paint;
+    }
+    for (int k = 0; k < count; ++k)
+      passes_.find_light(light, paints[k]->numbers, {of_ray, k}, second, is_lit, square.direction, square.normal, steps);
     for_each(square, [&](int i) {
-      std::uint8_t* pixel = images_.rgb + 3 * square.pixels[i];
+      std::uint8_t* bytes = images_.rgb + 3 * pixel(square, i);
       for (int k = 0; k < 3; ++k)
-        pixel[k] = square.surfaces.is_seen(i) ? bytes_of_light[steps[k * rays + i]] : stage_.background[k];
+        bytes[k] = square.surfaces.is_seen(i) ? bytes_of_light[steps[k * rays + i]] : stage_.background[k];
     });
   }
 
   void find_lit(const Square& square, Lanes& is_lit) const {
     for (int i = 0; i < rays; ++i) is_lit[i] = 1;
     if (!stage_.drawing.light.shadows) return;
-    alignas(64) int wanted[rays] = {};
-    bool any = false;
-    for_each_seen(square, [&](int i) {
-      if (vector_of(square.normal, i).dot(stage_.to_sun) > 0) wanted[i] = -1, any = true;
-    });
+    alignas(64) int wanted[rays];
+    const double x = stage_.to_sun.x(), y = stage_.to_sun.y(), z = stage_.to_sun.z();
+    int any = 0;
+    for (int i = 0; i < rays; ++i) {
+      const double towards = square.normal.x[i] * x + square.normal.y[i] * y + square.normal.z[i] * z;
+      wanted[i] = square.surfaces.is_seen(i) && towards > 0 ? -1 : 0;
+      any |= wanted[i];
+    }
     if (!any) return;
     bool hidden[rays];
     find_hidden(square, wanted, stage_.to_sun, false, hidden);
-    for (int i = 0; i < rays; ++i)
-      if (hidden[i]) is_lit[i] = 0;
+    for (int i = 0; i < rays; ++i) is_lit[i] = hidden[i] ? 0 : 1;
   }
 
   /// How much of the second color there is.
   void find_patterns(const Square& square, Lanes& second) const {
     constexpr double least_cosine = 0.02;
+    second = {};
     for (int k = 0; k < square.surfaces.count; ++k) {
       const Surface& surface = square.surfaces.all[k];
-      const auto for_each_of_it = [&](const auto& visit) {
-        for (int i = 0; i < rays; ++i)
-          if (square.surfaces.of_ray[i] == k) visit(i);
-      };
+      const Viewers viewers = square.surfaces.viewers(k);
       if (surface.segment && surface.segment->is_striped) {
-        for_each_of_it([&](int i) {
+        for (int i = 0; i < rays; ++i) {
+          if (!viewers.has(i)) continue;
           const Ray ray{eye_, vector_of(square.direction, i)};
           const double width = footprint_ * square.t[i] / std::max(square.cosine[i], least_cosine);
           second[i] = stripe_of(surface, ray, square.t[i], vector_of(square.normal, i), width);
-        });
+        }
       } else if (surface.part && surface.paint->look.pattern == Look::Pattern::checks) {
         const Eigen::Matrix3d& axes = surface.part->axes;
         const Vector3 eye = surface.part->inside(eye_);
@@ -370,9 +388,7 @@ class Painter {
                                   eye.y(),
                                   surface.paint->look.check_size,
                                   footprint_};
-        Lanes found;
-        passes_.find_checks(checks, square.direction, square.t, square.cosine, found);
-        for_each_of_it([&](int i) { second[i] = found[i]; });
+        passes_.find_checks(checks, viewers, square.direction, square.t, square.cosine, second);
       }
     }
   }

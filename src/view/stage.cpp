@@ -47,6 +47,12 @@ std::array<Vector3, 3> corners(const PlacedPart& part, unsigned triangle) {
   return corners;
 }
 
+/// A surface through a point, with its normal to the side of the eye.
+PlaneNumbers facing(const Vector3& normal, const Vector3& point, const Vector3& eye) {
+  const double height = normal.dot(point - eye), sign = height > 0 ? -1 : 1;
+  return {{sign * normal.x(), sign * normal.y(), sign * normal.z()}, sign * height};
+}
+
 RoundLine line_of(const PlacedPart& part) {
   if (const auto* sphere = std::get_if<SphereShape>(&part.shape))
     return RoundLine(part.pose.position, part.pose.position, sphere->radius);
@@ -183,8 +189,12 @@ RTCGeometry new_geometry(std::size_t count, Stage::Implementation& stage) {
 
 }  // namespace
 
-Paint::Paint(const Look& of)
-    : look(of), color(in_proportion_to_light(of.color)), second_color(in_proportion_to_light(of.second_color)) {}
+Paint::Paint(const Look& of) : look(of) {
+  const Vector3 color = in_proportion_to_light(of.color), second_color = in_proportion_to_light(of.second_color);
+  std::copy_n(color.data(), 3, numbers.color);
+  std::copy_n(second_color.data(), 3, numbers.second_color);
+  numbers.shininess = of.shininess;
+}
 
 Vector3 in_proportion_to_light(const Color& color) {
   const auto part = [](double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); };
@@ -350,10 +360,8 @@ PlaneNumbers Stage::Implementation::numbers_of(const PlacedPart& plane, const Ve
 
 Surface Stage::Implementation::surface_of_plane(int index, const Vector3& eye) const {
   const PlacedPart& plane = planes[static_cast<std::size_t>(index)];
-  const PlaneNumbers numbers = numbers_of(plane, eye);
   Surface surface{plane.thing, plane.paint, &plane};
-  surface.normal = Vector3(numbers.normal);
-  surface.height = numbers.height;
+  surface.numbers = numbers_of(plane, eye);
   return surface;
 }
 
@@ -380,14 +388,13 @@ Surface Stage::Implementation::surface_of(const RTCHit& hit, const Vector3& eye)
   Surface surface{part->thing, part->paint, part};
   if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
     const auto [a, b, c] = corners(*part, hit.primID);
-    surface.normal = (b - a).cross(c - a).normalized();
-    surface.height = surface.normal.dot(a - eye);
-    if (surface.height > 0) surface.normal = -surface.normal, surface.height = -surface.height;
+    surface.numbers = facing((b - a).cross(c - a).normalized(), a, eye);
   } else if (hit.geomID == boxes_id) {
     const unsigned face = hit.primID % triangles_of_box / 2;
     const int axis = face_axes[face];
-    surface.normal = face % 2 ? part->axes.col(axis) : Vector3(-part->axes.col(axis));
-    surface.height = surface.normal.dot(part->pose.position - eye) + 0.5 * std::get<BoxShape>(part->shape).size[axis];
+    const Vector3 outwards = face % 2 ? part->axes.col(axis) : Vector3(-part->axes.col(axis));
+    const double half = 0.5 * std::get<BoxShape>(part->shape).size[axis];
+    surface.numbers = facing(outwards, part->pose.position + half * outwards, eye);
   } else if (hit.geomID == lines_id) {
     surface.form = Surface::Form::round;
     surface.line = &lines[hit.primID];

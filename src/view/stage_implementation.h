@@ -21,7 +21,7 @@ struct Paint {
   explicit Paint(const Look& of);
 
   Look look;
-  Vector3 color, second_color;
+  PaintNumbers numbers;
 };
 
 /// A segment of a tube.
@@ -58,9 +58,8 @@ struct Surface {
   const PlacedPart* part = nullptr;      ///< null for tubes
   const TubeSegment* segment = nullptr;  ///< of tubes
   Form form = Form::flat;
-  Vector3 normal = Vector3::UnitZ();  ///< of flat ones, unit, towards the eye
-  double height = 0;                  ///< [m] of flat ones, above the eye along the normal
-  const RoundLine* line = nullptr;    ///< of round ones
+  PlaneNumbers numbers{};           ///< of flat ones, which face the eye
+  const RoundLine* line = nullptr;  ///< of round ones
 };
 
 /// What a ray meets.

@@ -68,11 +68,16 @@ std::vector<unsigned char> bytes_of(const PacketPasses& passes, unsigned seed) {
   Lanes found, cosine, second;
   VectorLanes normal;
   const Lanes about = numbers.lanes(0.5, 2);
-  passes.meet_flat({numbers.vectors(-1, 1), numbers.lanes(-1, 0)}, direction, about, found, normal);
+  const std::int64_t of_ray[rays]{0, 0, 0, 1, -1, 0, 0, 0, 1, 0, 0, 0, -1, 0, 0, 0};
+  const Viewers viewers{of_ray, 0};
+  found = cosine = second = about;
+  normal = numbers.vectors(-1, 1);
+  passes.meet_flat({{0.1, 0.2, -0.97}, -1.5}, viewers, direction, numbers.lanes(1.3, 1.9), found, normal);
   add_bytes(found, bytes);
   add_bytes(normal, bytes);
-  passes.meet_round({numbers.vectors(-0.3, 1), numbers.vectors(-0.5, 0.5), numbers.lanes(0.01, 0.8)}, direction, about, found,
-                    normal);
+  LineLanes lines{numbers.vectors(-0.3, 1), numbers.vectors(-0.5, 0.5), numbers.lanes(0.01, 0.8)};
+  lines.radius[3] = 0;
+  passes.meet_round(lines, direction, about, found, normal);
   add_bytes(found, bytes);
   add_bytes(normal, bytes);
   passes.find_cosines(direction, normal, cosine);
@@ -82,11 +87,11 @@ std::vector<unsigned char> bytes_of(const PacketPasses& passes, unsigned seed) {
     passes.ask_hidden(start, aim, is_place, 2e-5, 1e-5, direction, found, normal, hidden);
     add_bytes(hidden, bytes);
   }
-  passes.find_checks({{0.6, 0.8, 0}, {-0.8, 0.6, 0}, 0.2, 0.1, 0.1, 0.002}, direction, found, cosine, second);
+  passes.find_checks({{0.6, 0.8, 0}, {-0.8, 0.6, 0}, 0.2, 0.1, 0.1, 0.002}, viewers, direction, found, cosine, second);
   add_bytes(second, bytes);
-  int steps[3 * rays];
-  const LightLanes lanes{numbers.vectors(0, 1), numbers.vectors(0, 1), second, numbers.lanes(0, 1), numbers.lanes(0, 1)};
-  passes.find_light({{-0.36, -0.53, 0.77}, 0.4}, lanes, direction, normal, steps);
+  int steps[3 * rays] = {};
+  passes.find_light({{-0.36, -0.53, 0.77}, 0.4}, {{0.2, 0.5, 0.8}, {0.9, 0.1, 0.4}, 0.3}, viewers, second, numbers.lanes(0, 1),
+                    direction, normal, steps);
   add_bytes(steps, bytes);
   constexpr int count = 101;
   std::vector<float> depth(count), seen(count), measured(count), points(3 * count);

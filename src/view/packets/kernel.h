@@ -82,38 +82,39 @@ bool meet_line(const LineNumbers& line, const double* shift, RTCRayN* asked, uns
 /// Of t: the most by which that in double precision is taken to differ from Embree's.
 constexpr double most_difference = 1e-3;
 
-void meet_flat(const FlatLanes& surfaces, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal) {
+void meet_flat(const PlaneNumbers& surface, const Viewers& viewers, const VectorLanes& direction, const Lanes& about, Lanes& t,
+               VectorLanes& normal) {
+  const double x = surface.normal[0], y = surface.normal[1], z = surface.normal[2], height = surface.height;
+  const Viewers of = viewers;
   for (int i = 0; i < rays; ++i) {
-    const double x = surfaces.normal.x[i], y = surfaces.normal.y[i], z = surfaces.normal.z[i];
     const double dx = direction.x[i], dy = direction.y[i], dz = direction.z[i];
-    const double slope = x * dx + y * dy + z * dz, found = surfaces.height[i] / slope;
-    const bool is_met = std::abs(found - about[i]) <= most_difference * about[i];
+    const double slope = x * dx + y * dy + z * dz, found = height / slope;
+    const bool is_seen = of.has(i), is_met = std::abs(found - about[i]) <= most_difference * about[i];
     const double inverse_length = -1 / std::sqrt(dx * dx + dy * dy + dz * dz);
-    t[i] = is_met ? found : about[i];
-    normal.x[i] = is_met ? x : dx * inverse_length;
-    normal.y[i] = is_met ? y : dy * inverse_length;
-    normal.z[i] = is_met ? z : dz * inverse_length;
+    t[i] = is_seen ? (is_met ? found : about[i]) : t[i];
+    normal.x[i] = is_seen ? (is_met ? x : dx * inverse_length) : normal.x[i];
+    normal.y[i] = is_seen ? (is_met ? y : dy * inverse_length) : normal.y[i];
+    normal.z[i] = is_seen ? (is_met ? z : dz * inverse_length) : normal.z[i];
   }
 }
 
-void meet_round(const RoundLanes& surfaces, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal) {
+void meet_round(const LineLanes& lines, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal) {
   for (int i = 0; i < rays; ++i) {
-    const double x = surfaces.axis.x[i], y = surfaces.axis.y[i], z = surfaces.axis.z[i], square = x * x + y * y + z * z;
-    const double dx = direction.x[i], dy = direction.y[i], dz = direction.z[i];
-    const double inverse_square = square > 0 ? 1 / square : 0;
-    const OffsetRay ray{-surfaces.start.x[i], -surfaces.start.y[i], -surfaces.start.z[i], dx, dy, dz};
-    const LineNumbers line{x, y, z, inverse_square, surfaces.radius[i]};
+    const double x = lines.axis.x[i], y = lines.axis.y[i], z = lines.axis.z[i], square = x * x + y * y + z * z;
+    const double dx = direction.x[i], dy = direction.y[i], dz = direction.z[i], radius = lines.radius[i];
+    const LineNumbers line{x, y, z, square > 0 ? 1 / square : 0, radius};
+    const OffsetRay ray{-lines.start.x[i], -lines.start.y[i], -lines.start.z[i], dx, dy, dz};
     const double first = first_from_outside(line, ray, 0);
     const double found = passes_by(line, ray) ? never : first;
-    const bool is_met = found < never;
+    const bool is_seen = radius > 0, is_met = found < never && found > from_inside;
     const double px = ray.ox + found * dx, py = ray.oy + found * dy, pz = ray.oz + found * dz;
-    const double part = (px * x + py * y + pz * z) * inverse_square;
-    const double within = part < 0 ? 0 : part > 1 ? 1 : part, inverse_radius = 1 / surfaces.radius[i];
+    const double part = (px * x + py * y + pz * z) * line.inverse_square;
+    const double within = part < 0 ? 0 : part > 1 ? 1 : part, inverse_radius = 1 / radius;
     const double inverse_length = -1 / std::sqrt(dx * dx + dy * dy + dz * dz);
-    t[i] = is_met ? found : about[i];
-    normal.x[i] = is_met ? (px - within * x) * inverse_radius : dx * inverse_length;
-    normal.y[i] = is_met ? (py - within * y) * inverse_radius : dy * inverse_length;
-    normal.z[i] = is_met ? (pz - within * z) * inverse_radius : dz * inverse_length;
+    t[i] = is_seen ? (is_met ? found : about[i]) : t[i];
+    normal.x[i] = is_seen ? (is_met ? (px - within * x) * inverse_radius : dx * inverse_length) : normal.x[i];
+    normal.y[i] = is_seen ? (is_met ? (py - within * y) * inverse_radius : dy * inverse_length) : normal.y[i];
+    normal.z[i] = is_seen ? (is_met ? (pz - within * z) * inverse_radius : dz * inverse_length) : normal.z[i];
   }
 }
 
@@ -156,10 +157,12 @@ void ask_hidden(const double* start, const double* aim, bool is_place, double ga
   return std::abs(2 * (0.5 * at - std::floor(0.5 * at)) - 1);
 }
 
-void find_checks(const CheckNumbers& checks, const VectorLanes& direction, const Lanes& t, const Lanes& cosine, Lanes& second) {
+void find_checks(const CheckNumbers& checks, const Viewers& viewers, const VectorLanes& direction, const Lanes& t,
+                 const Lanes& cosine, Lanes& second) {
   constexpr double least_cosine = 0.02, least_width = 1e-6, far_too_fine = 50;  // widths in squares
   const double ux = checks.x_axis[0], uy = checks.x_axis[1], uz = checks.x_axis[2];
   const double vx = checks.y_axis[0], vy = checks.y_axis[1], vz = checks.y_axis[2];
+  const Viewers of = viewers;
   const double squares = 1 / checks.size, eye_u = checks.x, eye_v = checks.y, footprint = checks.footprint;
   for (int i = 0; i < rays; ++i) {
     const double dx = direction.x[i], dy = direction.y[i], dz = direction.z[i];
@@ -170,7 +173,8 @@ void find_checks(const CheckNumbers& checks, const VectorLanes& direction, const
     // The means of square waves over what a pixel shows.
     const double mean_u = integral_of_square_wave(u - 0.5 * width) - integral_of_square_wave(u + 0.5 * width);
     const double mean_v = integral_of_square_wave(v - 0.5 * width) - integral_of_square_wave(v + 0.5 * width);
-    second[i] = width < far_too_fine ? 0.5 - 0.5 * mean_u * mean_v / (width * width) : 0.5;
+    const double share = width < far_too_fine ? 0.5 - 0.5 * mean_u * mean_v / (width * width) : 0.5;
+    second[i] = of.has(i) ? share : second[i];
   }
 }
 
@@ -180,29 +184,33 @@ void find_checks(const CheckNumbers& checks, const VectorLanes& direction, const
   return static_cast<int>(within * last_step_of_light + 0.5);
 }
 
-void find_light(const LightNumbers& light, const LightLanes& lanes, const VectorLanes& direction, const VectorLanes& normal,
-                int* steps) {
+void find_light(const LightNumbers& light, const PaintNumbers& paint, const Viewers& viewers, const Lanes& second,
+                const Lanes& is_lit, const VectorLanes& direction, const VectorLanes& normal, int* steps) {
   constexpr double darker_below = 0.35;  // of the sky's light, on what faces down
   const double sun_x = light.to_sun[0], sun_y = light.to_sun[1], sun_z = light.to_sun[2], ambient = light.ambient;
-  alignas(64) double red[rays], green[rays], blue[rays];
+  const Viewers of = viewers;
+  const double shininess = paint.shininess;
+  alignas(64) double brightness[rays], reflection[rays];
   for (int i = 0; i < rays; ++i) {
     const double dx = direction.x[i], dy = direction.y[i], dz = direction.z[i];
     const double nx = normal.x[i], ny = normal.y[i], nz = normal.z[i];
     const double to_sun = nx * sun_x + ny * sun_y + nz * sun_z, along = nx * dx + ny * dy + nz * dz;
-    const double sun = to_sun > 0 ? (1 - ambient) * lanes.is_lit[i] : 0;
-    const double brightness = ambient * (1 - darker_below * 0.5 * (1 - nz)) + sun * to_sun;
+    const double sun = to_sun > 0 ? (1 - ambient) * is_lit[i] : 0;
+    brightness[i] = ambient * (1 - darker_below * 0.5 * (1 - nz)) + sun * to_sun;
     // As Phong has it, with the exponent 32, of the mirrored line of sight.
     const double mirrored = dx * sun_x + dy * sun_y + dz * sun_z - 2 * along * to_sun;
     double power = (mirrored > 0 ? mirrored : 0) / std::sqrt(dx * dx + dy * dy + dz * dz);
     for (int k = 0; k < 5; ++k) power *= power;
-    const double reflection = sun * lanes.shininess[i] * power, second = lanes.second[i];
-    red[i] = brightness * (lanes.color.x[i] + second * (lanes.second_color.x[i] - lanes.color.x[i])) + reflection;
-    green[i] = brightness * (lanes.color.y[i] + second * (lanes.second_color.y[i] - lanes.color.y[i])) + reflection;
-    blue[i] = brightness * (lanes.color.z[i] + second * (lanes.second_color.z[i] - lanes.color.z[i])) + reflection;
+    reflection[i] = sun * shininess * power;
   }
-  for (int i = 0; i < rays; ++i) steps[i] = step_of_light(red[i]);
-  for (int i = 0; i < rays; ++i) steps[rays + i] = step_of_light(green[i]);
-  for (int i = 0; i < rays; ++i) steps[2 * rays + i] = step_of_light(blue[i]);
+  for (int channel = 0; channel < 3; ++channel) {
+    const double color = paint.color[channel], difference = paint.second_color[channel] - color;
+    int* const out = steps + channel * rays;
+    for (int i = 0; i < rays; ++i) {
+      const int step = step_of_light(brightness[i] * (color + second[i] * difference) + reflection[i]);
+      out[i] = of.has(i) ? step : out[i];
+    }
+  }
 }
 
 void measure(const SensorNumbers& sensor, const float* depth, const float* cosine, int count, float* measured) {

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace verlet_cable::view {
 
 constexpr int side = 4;  // of the squares of pixels whose rays are followed together
@@ -18,23 +20,19 @@ struct VectorLanes {
   Lanes x, y, z;
 };
 
-/// Surfaces that rays meet, each another one.
-struct FlatLanes {
-  VectorLanes normal;  ///< unit
-  Lanes height;        ///< [m] of the plane above the eye, along the normal
-};
-struct RoundLanes {
-  VectorLanes start;  ///< [m] of the line's start, from the eye
-  VectorLanes axis;   ///< [m] from there to its end
-  Lanes radius;       ///< [m]
+/// A round line of each ray, from the eye: neighbours often see different segments of a cable.
+struct LineLanes {
+  VectorLanes start, axis;  ///< [m]
+  Lanes radius;             ///< [m] 0 where something else is seen
 };
 
-/// What the light is computed of.
-struct LightLanes {
-  VectorLanes color, second_color;  ///< of the paint, in proportion to light
-  Lanes second;                     ///< 0 to 1: how much of the second one there is
-  Lanes shininess;
-  Lanes is_lit;  ///< 1: the sun reaches it, 0: it does not
+/// Which rays of a square see one of its surfaces: those whose number in `of_ray` is `index`. What passes find of a surface they
+/// write for these only.
+struct Viewers {
+  const std::int64_t* of_ray;
+  std::int64_t index;
+
+  bool has(int i) const { return of_ray[i] == index; }
 };
 
 }  // namespace verlet_cable::view

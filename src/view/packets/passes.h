@@ -9,10 +9,15 @@
 
 namespace verlet_cable::view {
 
-/// What a plane is for all rays from the eye.
+/// What a plane, or a flat surface, is for all rays from the eye.
 struct PlaneNumbers {
   double normal[3];  ///< unit
   double height;     ///< [m] of the plane above the eye, along the normal
+};
+
+struct PaintNumbers {
+  double color[3], second_color[3];  ///< in proportion to light
+  double shininess;
 };
 
 /// Squares on a surface, as `checks_at` has them.
@@ -51,10 +56,11 @@ struct PacketPasses {
   /// What Embree asks of a line: t of the first meetings of `count` (4, 8 or 16) rays, and whether any of them meets it; is
   /// `from_inside` where that has to be looked at otherwise. `shift` [m]: from the line's start to the origin of Embree's scene.
   bool (*meet_line)(const LineNumbers& line, const double* shift, RTCRayN* asked, unsigned count, double* t);
-  /// t and normals, towards the eye, of flat and of round surfaces. Where single precision has met what double precision just
-  /// misses, they are left: t is as Embree has it (`about`), and the surface faces the ray.
-  void (*meet_flat)(const FlatLanes& surfaces, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal);
-  void (*meet_round)(const RoundLanes& surfaces, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal);
+  /// t and normals of a flat surface that faces the eye, and of lines. Where single precision has met what double precision just
+  /// misses, t is as Embree has it (`about`), and the surface faces the ray.
+  void (*meet_flat)(const PlaneNumbers& surface, const Viewers& viewers, const VectorLanes& direction, const Lanes& about,
+                    Lanes& t, VectorLanes& normal);
+  void (*meet_round)(const LineLanes& lines, const VectorLanes& direction, const Lanes& about, Lanes& t, VectorLanes& normal);
   /// Cosines of the angles between lines of sight and normals.
   void (*find_cosines)(const VectorLanes& direction, const VectorLanes& normal, Lanes& cosine);
   /// Fills a query of Embree with rays from just in front of what is seen, which end at `aim` [m] from the eye where `is_place`,
@@ -62,11 +68,12 @@ struct PacketPasses {
   void (*ask_hidden)(const double* start, const double* aim, bool is_place, double gap, double gap_of_t,
                      const VectorLanes& direction, const Lanes& t, const VectorLanes& normal, RTCRay16& query);
   /// How much of the second color of checks there is.
-  void (*find_checks)(const CheckNumbers& checks, const VectorLanes& direction, const Lanes& t, const Lanes& cosine,
-                      Lanes& second);
-  /// The light that comes from surfaces, in proportion, in steps of 1 / `last_step_of_light`.
-  void (*find_light)(const LightNumbers& light, const LightLanes& lanes, const VectorLanes& direction, const VectorLanes& normal,
-                     int* steps);
+  void (*find_checks)(const CheckNumbers& checks, const Viewers& viewers, const VectorLanes& direction, const Lanes& t,
+                      const Lanes& cosine, Lanes& second);
+  /// The light that comes from a surface, in proportion, in steps of 1 / `last_step_of_light`: red, green and blue of all rays.
+  /// `second`: how much of the paint's second color there is, 0 to 1; `is_lit`: 1 where the sun reaches it, otherwise 0.
+  void (*find_light)(const LightNumbers& light, const PaintNumbers& paint, const Viewers& viewers, const Lanes& second,
+                     const Lanes& is_lit, const VectorLanes& direction, const VectorLanes& normal, int* steps);
   /// Measures a row of depths. `cosine`: below 0 where the second imager sees nothing.
   void (*measure)(const SensorNumbers& sensor, const float* depth, const float* cosine, int count, float* measured);
   /// Points of a row of depths: `sights` has x and y at the depth 1 of each pixel.
