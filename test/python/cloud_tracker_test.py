@@ -20,7 +20,8 @@ RADIUS, DENSITY = 0.012, 0.1
 def moved(time):
     """Where the hands are [m]: a decimetre to and fro, each another way."""
     left, right = (np.array(position, dtype=float) for _, position in HANDS)
-    return (left + [0, 0.1 * np.sin(2 * time), 0.08 * np.sin(3 * time)], right + [-0.15 * (1 - np.cos(1.5 * time)), 0, 0.1 * np.sin(2 * time)])
+    return (left + [0, 0.1 * np.sin(2 * time), 0.08 * np.sin(3 * time)],
+            right + [-0.15 * (1 - np.cos(1.5 * time)), 0, 0.1 * np.sin(2 * time)])
 
 
 def test_a_world_follows_the_clouds_of_a_cable_that_hands_move():
