@@ -5,10 +5,10 @@ import argparse
 import os
 import sys
 
-import genpy
 import numpy as np
 import rosbag
 import rospkg
+import rospy
 import tf2_py
 from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 
@@ -50,7 +50,7 @@ def cloud_of(depth, info):
 def moments(path, frame):
     """Stamp [s], cloud and true nodes in the fixed frame, of each depth image."""
     with rosbag.Bag(path) as bag:
-        buffer = tf2_py.BufferCore(genpy.Duration(CACHE))
+        buffer = tf2_py.BufferCore(rospy.Duration(CACHE))
         for topic, message, _ in bag.read_messages(TOPICS[:2]):
             for transform in message.transforms:
                 (buffer.set_transform_static if topic == '/tf_static' else buffer.set_transform)(as_its_class(transform), path)
