@@ -5,13 +5,13 @@
 #include <cstddef>
 #include <limits>
 
+#include "packets/passes.h"
 #include "random.h"
 
 namespace verlet_cable::view {
 namespace {
 
 constexpr float no_return = std::numeric_limits<float>::quiet_NaN();
-constexpr unsigned for_noise = 0, for_edges = 1;  // uses of random numbers
 
 /// Whether a neighbour of a pixel is deeper by more than `step`, or shows nothing.
 bool is_beside_edge(const CameraModel& model, const float* depth, int column, int row, double step) {
@@ -33,27 +33,23 @@ bool is_perfect(const SensorModel& sensor) {
 
 void measure_row(const CameraModel& model, const SensorModel& sensor, const NoiseSeed& noise, const TrueDepth& truth, int row,
                  float* measured) {
-  const CountedRandom random(noise.seed, noise.image);
-  const double least_cosine = std::cos(sensor.dropout_angle * M_PI / 180);
-  const double disparity_at_1 = std::abs(model.fx * sensor.baseline);
-  const auto [a, b, c] = sensor.axial;
+  static const PacketPasses& passes = packet_passes();
+  const std::size_t first = static_cast<std::size_t>(row) * static_cast<std::size_t>(model.width);
+  SensorNumbers numbers;
+  std::copy(sensor.axial.begin(), sensor.axial.end(), numbers.axial);
+  numbers.near = model.near;
+  numbers.far = model.far;
+  numbers.least_cosine = sensor.dropout_angle < 90 ? std::cos(sensor.dropout_angle * M_PI / 180) : 0;
+  numbers.disparity_at_1 = std::abs(model.fx * sensor.baseline);
+  numbers.disparity_step = sensor.disparity_step;
+  numbers.key = random_key(noise.seed, noise.image);
+  numbers.first_number = first;
+  passes.measure(numbers, truth.depth + first, truth.cosine + first, model.width, measured);
+  if (sensor.edge_dropout == 0) return;
   for (int column = 0; column < model.width; ++column) {
-    const std::size_t pixel = static_cast<std::size_t>(row) * model.width + column;
-    measured[column] = no_return;
-    const double depth = truth.depth[pixel], cosine = truth.cosine[pixel];
-    if (!(depth >= model.near) || cosine < 0 || (sensor.dropout_angle < 90 && cosine < least_cosine)) continue;
-    if (sensor.edge_dropout > 0 && is_beside_edge(model, truth.depth, column, row, sensor.edge_step) &&
-        random.uniform(pixel, for_edges) < sensor.edge_dropout)
-      continue;
-    const double deviation = a + depth * (b + depth * c);
-    double seen = depth;
-    if (deviation > 0) seen += deviation * normal_quantile(random.uniform(pixel, for_noise));
-    if (sensor.disparity_step > 0) {
-      const double disparity = sensor.disparity_step * std::round(disparity_at_1 / seen / sensor.disparity_step);
-      if (!(disparity > 0)) continue;
-      seen = disparity_at_1 / disparity;
-    }
-    if (seen >= model.near && seen <= model.far) measured[column] = static_cast<float>(seen);
+    const auto bits = static_cast<std::int64_t>(random_bits(numbers.key, first + static_cast<std::size_t>(column), for_edges));
+    if (uniform_of_bits(bits) < sensor.edge_dropout && is_beside_edge(model, truth.depth, column, row, sensor.edge_step))
+      measured[column] = no_return;
   }
 }
 

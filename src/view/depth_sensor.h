@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstdint>
-
 #include "verlet_cable/view/render.h"
 
 namespace verlet_cable::view {

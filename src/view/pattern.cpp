@@ -4,25 +4,6 @@
 #include <cmath>
 
 namespace verlet_cable::view {
-namespace {
-
-constexpr double far_too_fine = 50;  // [squares in a pixel]
-
-/// The mean of a square wave of period 2, +1 and -1, over `width` around a place.
-double mean_of_square_wave(double place, double width) {
-  // The integral of the square wave is a triangular one.
-  const auto integral = [](double at) { return std::abs(2 * (0.5 * at - std::floor(0.5 * at)) - 1); };
-  return (integral(place - 0.5 * width) - integral(place + 0.5 * width)) / width;
-}
-
-}  // namespace
-
-double checks_at(const Look& look, double x, double y, double width) {
-  const double in_squares = std::max(width / look.check_size, 1e-6);
-  if (in_squares >= far_too_fine) return 0.5;
-  return 0.5 - 0.5 * mean_of_square_wave(x / look.check_size, in_squares) * mean_of_square_wave(y / look.check_size, in_squares);
-}
-
 double stripes_at(const Look& look, double angle, double width) {
   if (look.stripes == 0) return 0;
   const double period = 2 * M_PI / look.stripes;

@@ -1,15 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 
-#include "stage_implementation.h"
+#include "packets/passes.h"
 
 namespace verlet_cable::view {
 
-/// Three bytes, as an image has them, of light in proportion.
-void write_color(const Vector3& light, std::uint8_t* pixel);
-
-/// The light from what is seen. `direction`: of the line of sight, unit; `is_lit`: the sun reaches it.
-Vector3 light_from(const Stage::Implementation& stage, const Sighting& seen, const Vector3& direction, bool is_lit);
+/// The bytes of amounts of light in steps of 1 / `last_step_of_light` (IEC 61966-2-1).
+extern const std::array<std::uint8_t, last_step_of_light + 1> bytes_of_light;
 
 }  // namespace verlet_cable::view

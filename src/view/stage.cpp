@@ -8,7 +8,6 @@
 #include <variant>
 
 #include "error_lines.h"
-#include "pattern.h"
 #include "stage_implementation.h"
 #include "verlet_cable/core/rotation.h"
 
@@ -16,6 +15,7 @@ namespace verlet_cable::view {
 namespace {
 
 constexpr unsigned triangles_of_box = 12;
+constexpr int face_axes[] = {2, 2, 1, 1, 0, 0};  // of a box, each with its lower face first
 
 /// One for the process, and never released: stages may live until its end.
 RTCDevice device() {
@@ -43,39 +43,22 @@ std::array<Vector3, 3> corners(const PlacedPart& part, unsigned triangle) {
   const TriangleMesh& mesh = *std::get<MeshShape>(part.shape).mesh;
   const TriangleMesh::Triangle& indices = mesh.triangles()[triangle];
   std::array<Vector3, 3> corners;
-  for (int k = 0; k < 3; ++k) corners[k] = part.pose.orientation * mesh.vertices()[indices[k]] + part.pose.position;
+  for (int k = 0; k < 3; ++k) corners[k] = part.axes * mesh.vertices()[indices[k]] + part.pose.position;
   return corners;
 }
 
-/// [1] Of the size of a pixel, what lies under it of a surface that is seen aslant.
-double aslant(const Vector3& normal, const Ray& ray) {
-  const double cosine = std::abs(normal.dot(ray.direction)) / ray.direction.norm();
-  return 1 / std::max(cosine, 0.02);
+/// A surface through a point, with its normal to the side of the eye.
+PlaneNumbers facing(const Vector3& normal, const Vector3& point, const Vector3& eye) {
+  const double height = normal.dot(point - eye), sign = height > 0 ? -1 : 1;
+  return {{sign * normal.x(), sign * normal.y(), sign * normal.z()}, sign * height};
 }
 
-/// `meeting`: its normal is in the part's frame.
-Sighting part_sighting(const PlacedPart& part, const Ray& ray, const Meeting& meeting, double footprint) {
-  Sighting seen{part.thing, meeting.t, part.axes * meeting.normal, part.paint, 0};
-  if (footprint > 0 && part.paint->look.pattern == Look::Pattern::checks) {
-    const Vector3 place = part.inside(ray.at(meeting.t));
-    seen.second_color = checks_at(part.paint->look, place.x(), place.y(), footprint * meeting.t * aslant(seen.normal, ray));
-  }
-  return seen;
-}
-
-Sighting tube_sighting(const TubeSegment& segment, const Ray& ray, double lowest, double t, double footprint) {
-  // Grazing rays that miss by rounding meet it where Embree has it.
-  const Meeting otherwise{t, -ray.direction.normalized()};
-  const Meeting meeting = segment.line.meet(ray, lowest).value_or(otherwise);
-  Sighting seen{segment.thing, meeting.t, meeting.normal, segment.paint, 0};
-  if (footprint > 0 && segment.is_striped) {
-    const double part = std::clamp(segment.line.part(ray.at(meeting.t)), 0.0, 1.0);
-    const double roll = segment.roll_at_start + part * (segment.roll_at_end - segment.roll_at_start);
-    const double angle = std::atan2(meeting.normal.dot(segment.third), meeting.normal.dot(segment.second)) - roll;
-    seen.second_color =
-        stripes_at(segment.paint->look, angle, footprint * meeting.t * aslant(meeting.normal, ray) / segment.line.radius());
-  }
-  return seen;
+RoundLine line_of(const PlacedPart& part) {
+  if (const auto* sphere = std::get_if<SphereShape>(&part.shape))
+    return RoundLine(part.pose.position, part.pose.position, sphere->radius);
+  const auto& capsule = std::get<CapsuleShape>(part.shape);
+  const Vector3 half = 0.5 * capsule.length * part.axes.col(2);
+  return RoundLine(part.pose.position - half, part.pose.position + half, capsule.radius);
 }
 
 /// One of the rays that Embree has from the stage's origin on, in the fixed frame.
@@ -84,31 +67,47 @@ Ray ray_of(RTCRayN* rays, unsigned count, unsigned i, const Vector3& origin) {
           Vector3(RTCRayN_dir_x(rays, count, i), RTCRayN_dir_y(rays, count, i), RTCRayN_dir_z(rays, count, i))};
 }
 
-/// What Embree asks of segments of tubes. Its own round curves are in a tree of oriented boxes, as for hair, where rays take
-/// longer.
-struct Tubes {
+/// What Embree asks of round things. Its own round curves are in a tree of oriented boxes, as for hair, where rays take longer.
+struct Lines {
   const Stage::Implementation& stage;
 
   std::optional<double> first(unsigned index, const Ray& ray, double lowest) const {
-    return stage.segments[index].line.first(ray, lowest);
+    return stage.lines[index].first(ray, lowest);
   }
   Aabb bounds(unsigned index) const {
-    const RoundLine& line = stage.segments[index].line;
+    const RoundLine& line = stage.lines[index];
     const Vector3 end = line.start() + line.axis(), radius = Vector3::Constant(line.radius());
     return {line.start().cwiseMin(end) - radius, line.start().cwiseMax(end) + radius};
   }
+  /// t of a packet's first meetings, `never` where there is none; false: nowhere.
+  bool meet(unsigned index, RTCRayN* asked, unsigned count, double* t) const {
+    static const PacketPasses& passes = packet_passes();
+    const RoundLine& line = stage.lines[index];
+    const Vector3 shift = stage.origin - line.start();
+    if (!passes.meet_line(line.numbers(), shift.data(), asked, count, t)) return false;
+    for (unsigned i = 0; i < count; ++i)
+      if (t[i] == from_inside)
+        t[i] = line.first(ray_of(asked, count, i, stage.origin), RTCRayN_tnear(asked, count, i)).value_or(never);
+    return true;
+  }
 };
 
-/// What it asks of solids.
-struct Solids {
+/// What it asks of cylinders.
+struct Cylinders {
   const Stage::Implementation& stage;
 
   std::optional<double> first(unsigned index, const Ray& ray, double lowest) const {
-    const PlacedPart& part = stage.solids[index];
-    const auto meeting = meet(part.shape, part.inside(ray), lowest);
-    return meeting ? std::optional<double>(meeting->t) : std::nullopt;
+    const PlacedPart& part = stage.cylinders[index];
+    const auto& cylinder = std::get<CylinderShape>(part.shape);
+    Vector3 normal;
+    return meet_cylinder(cylinder.radius, 0.5 * cylinder.length, part.inside(ray), lowest, normal);
   }
-  Aabb bounds(unsigned index) const { return verlet_cable::bounds(stage.solids[index].shape, stage.solids[index].pose); }
+  Aabb bounds(unsigned index) const { return verlet_cable::bounds(stage.cylinders[index].shape, stage.cylinders[index].pose); }
+  bool meet(unsigned index, RTCRayN* asked, unsigned count, double* t) const {
+    for (unsigned i = 0; i < count; ++i)
+      t[i] = first(index, ray_of(asked, count, i, stage.origin), RTCRayN_tnear(asked, count, i)).value_or(never);
+    return true;
+  }
 };
 
 template <class Things>
@@ -126,17 +125,26 @@ void find_bounds(const RTCBoundsFunctionArguments* arguments) {
   out.upper_z = static_cast<float>(box.max().z() + margin);
 }
 
+/// t at which the rays that Embree has meet a thing, `never` where they do not; false: nowhere.
+template <class Things>
+bool find_meetings(const Things& things, unsigned index, RTCRayN* asked, unsigned count, double* t) {
+  if (count > 1) return things.meet(index, asked, count, t);
+  const auto first = things.first(index, ray_of(asked, 1, 0, things.stage.origin), RTCRayN_tnear(asked, 1, 0));
+  *t = first.value_or(never);
+  return first.has_value();
+}
+
 template <class Things>
 void intersect(const RTCIntersectFunctionNArguments* arguments) {
   const Things things{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
   const unsigned count = arguments->N;
-  RTCRayN* rays = RTCRayHitN_RayN(arguments->rayhit, count);
+  RTCRayN* asked = RTCRayHitN_RayN(arguments->rayhit, count);
   RTCHitN* hits = RTCRayHitN_HitN(arguments->rayhit, count);
+  alignas(64) double t[rays];
+  if (!find_meetings(things, arguments->primID, asked, count, t)) return;
   for (unsigned i = 0; i < count; ++i) {
-    if (arguments->valid[i] != -1) continue;
-    const auto t = things.first(arguments->primID, ray_of(rays, count, i, things.stage.origin), RTCRayN_tnear(rays, count, i));
-    if (!t || !(static_cast<float>(*t) < RTCRayN_tfar(rays, count, i))) continue;
-    RTCRayN_tfar(rays, count, i) = static_cast<float>(*t);
+    if (arguments->valid[i] != -1 || !(static_cast<float>(t[i]) < RTCRayN_tfar(asked, count, i))) continue;
+    RTCRayN_tfar(asked, count, i) = static_cast<float>(t[i]);
     RTCHitN_geomID(hits, count, i) = arguments->geomID;
     RTCHitN_primID(hits, count, i) = arguments->primID;
     RTCHitN_instID(hits, count, i, 0) = arguments->context->instID[0];
@@ -147,12 +155,11 @@ template <class Things>
 void occlude(const RTCOccludedFunctionNArguments* arguments) {
   const Things things{*static_cast<const Stage::Implementation*>(arguments->geometryUserPtr)};
   const unsigned count = arguments->N;
-  RTCRayN* rays = arguments->ray;
-  for (unsigned i = 0; i < count; ++i) {
-    if (arguments->valid[i] != -1) continue;
-    const auto t = things.first(arguments->primID, ray_of(rays, count, i, things.stage.origin), RTCRayN_tnear(rays, count, i));
-    if (t && *t <= RTCRayN_tfar(rays, count, i)) RTCRayN_tfar(rays, count, i) = -std::numeric_limits<float>::infinity();
-  }
+  alignas(64) double t[rays];
+  if (!find_meetings(things, arguments->primID, arguments->ray, count, t)) return;
+  for (unsigned i = 0; i < count; ++i)
+    if (arguments->valid[i] == -1 && t[i] < never && t[i] <= RTCRayN_tfar(arguments->ray, count, i))
+      RTCRayN_tfar(arguments->ray, count, i) = -std::numeric_limits<float>::infinity();
 }
 
 template <class Item>
@@ -182,8 +189,12 @@ RTCGeometry new_geometry(std::size_t count, Stage::Implementation& stage) {
 
 }  // namespace
 
-Paint::Paint(const Look& of)
-    : look(of), color(in_proportion_to_light(of.color)), second_color(in_proportion_to_light(of.second_color)) {}
+Paint::Paint(const Look& of) : look(of) {
+  const Vector3 color = in_proportion_to_light(of.color), second_color = in_proportion_to_light(of.second_color);
+  std::copy_n(color.data(), 3, numbers.color);
+  std::copy_n(second_color.data(), 3, numbers.second_color);
+  numbers.shininess = of.shininess;
+}
 
 Vector3 in_proportion_to_light(const Color& color) {
   const auto part = [](double value) { return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4); };
@@ -213,8 +224,10 @@ MeshTree::~MeshTree() {
 
 Stage::Implementation::Implementation(Drawing shown, const Implementation* before) : drawing(std::move(shown)) {
   to_sun = drawing.light.direction.normalized();
-  background = in_proportion_to_light(drawing.background);
+  for (int k = 0; k < 3; ++k)
+    background[k] = static_cast<std::uint8_t>(std::lround(255 * std::clamp(drawing.background[k], 0.0, 1.0)));
   for (std::size_t i = 0; i < drawing.things.size(); ++i) place(drawing.things[i], static_cast<int>(i));
+  collect_rounds();
   find_origin();
   build(before);
 }
@@ -228,9 +241,9 @@ std::vector<PlacedPart>& Stage::Implementation::group_of(const Shape& shape) {
     Implementation& stage;
 
     std::vector<PlacedPart>& operator()(const PlaneShape&) const { return stage.planes; }
-    std::vector<PlacedPart>& operator()(const SphereShape&) const { return stage.solids; }
-    std::vector<PlacedPart>& operator()(const CapsuleShape&) const { return stage.solids; }
-    std::vector<PlacedPart>& operator()(const CylinderShape&) const { return stage.solids; }
+    std::vector<PlacedPart>& operator()(const SphereShape&) const { return stage.rounds; }
+    std::vector<PlacedPart>& operator()(const CapsuleShape&) const { return stage.rounds; }
+    std::vector<PlacedPart>& operator()(const CylinderShape&) const { return stage.cylinders; }
     std::vector<PlacedPart>& operator()(const BoxShape&) const { return stage.boxes; }
     std::vector<PlacedPart>& operator()(const MeshShape&) const { return stage.meshes; }
   };
@@ -252,7 +265,8 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
   const std::size_t first = segments.size();
   for (std::size_t i = 0; i < count; ++i) {
     const double radius = tube.radii[tube.radii.size() == 1 ? 0 : i];
-    TubeSegment segment{index, RoundLine(tube.centers[i], tube.centers[i + 1], radius), &paint};
+    lines.emplace_back(tube.centers[i], tube.centers[i + 1], radius);
+    TubeSegment segment{index, &paint};
     if (is_striped) {
       const Eigen::Matrix3d axes = tube.orientations[i].normalized().toRotationMatrix();
       segment.is_striped = true;
@@ -268,10 +282,14 @@ void Stage::Implementation::place(const Tube& tube, const Paint& paint, int inde
   }
 }
 
+void Stage::Implementation::collect_rounds() {
+  for (const PlacedPart& part : rounds) lines.push_back(line_of(part));
+}
+
 void Stage::Implementation::find_origin() {
   Aabb box;
-  for (const TubeSegment& segment : segments) box.extend(segment.line.start()).extend(segment.line.start() + segment.line.axis());
-  for (const auto* group : {&boxes, &solids, &meshes})
+  for (const RoundLine& line : lines) box.extend(line.start()).extend(line.start() + line.axis());
+  for (const auto* group : {&boxes, &cylinders, &meshes})
     for (const PlacedPart& part : *group) box.extend(part.pose.position);
   if (!box.isEmpty()) origin = box.center();
 }
@@ -280,16 +298,16 @@ void Stage::Implementation::build(const Implementation* before) {
   scene = rtcNewScene(device());
   // Rays do not slip through between triangles.
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-  add_tubes();
+  add_lines();
   add_boxes();
-  add_solids();
+  add_cylinders();
   add_meshes(before);
   rtcCommitScene(scene);
   check(device());
 }
 
-void Stage::Implementation::add_tubes() {
-  if (!segments.empty()) attach(scene, new_geometry<Tubes>(segments.size(), *this), tubes_id);
+void Stage::Implementation::add_lines() {
+  if (!lines.empty()) attach(scene, new_geometry<Lines>(lines.size(), *this), lines_id);
 }
 
 void Stage::Implementation::add_boxes() {
@@ -316,8 +334,8 @@ void Stage::Implementation::add_boxes() {
   attach(scene, geometry, boxes_id);
 }
 
-void Stage::Implementation::add_solids() {
-  if (!solids.empty()) attach(scene, new_geometry<Solids>(solids.size(), *this), solids_id);
+void Stage::Implementation::add_cylinders() {
+  if (!cylinders.empty()) attach(scene, new_geometry<Cylinders>(cylinders.size(), *this), cylinders_id);
 }
 
 void Stage::Implementation::add_meshes(const Implementation* before) {
@@ -335,57 +353,70 @@ void Stage::Implementation::add_meshes(const Implementation* before) {
   }
 }
 
-Stage::Implementation::PlaneMeeting Stage::Implementation::meet_planes(const Ray& ray, double highest) const {
-  PlaneMeeting nearest{-1, highest};
-  for (std::size_t i = 0; i < planes.size(); ++i) {
-    const Vector3 normal = planes[i].axes.col(2);
-    const double slope = normal.dot(ray.direction), height = normal.dot(ray.origin - planes[i].pose.position);
-    // From their outside only.
-    if (slope < 0 && height >= 0 && height < -slope * nearest.t) nearest = {static_cast<int>(i), -height / slope};
-  }
-  return nearest;
+PlaneNumbers Stage::Implementation::numbers_of(const PlacedPart& plane, const Vector3& eye) const {
+  const Vector3 normal = plane.axes.col(2);
+  return {{normal.x(), normal.y(), normal.z()}, normal.dot(plane.pose.position - eye)};
 }
 
-Sighting Stage::Implementation::plane_sighting(const Ray& ray, const PlaneMeeting& meeting, double footprint) const {
-  return part_sighting(planes[meeting.plane], ray, {meeting.t, Vector3::UnitZ()}, footprint);
+Surface Stage::Implementation::surface_of_plane(int index, const Vector3& eye) const {
+  const PlacedPart& plane = planes[static_cast<std::size_t>(index)];
+  Surface surface{plane.thing, plane.paint, &plane};
+  surface.numbers = numbers_of(plane, eye);
+  return surface;
 }
 
 const PlacedPart* Stage::Implementation::part_hit(const RTCHit& hit) const {
   if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) return &meshes[hit.instID[0] - first_mesh_id];
   switch (hit.geomID) {
-    case tubes_id:
-      return nullptr;
+    case lines_id:
+      return hit.primID < segments.size() ? nullptr : &rounds[hit.primID - segments.size()];
     case boxes_id:
       return &boxes[hit.primID / triangles_of_box];
     default:
-      return &solids[hit.primID];
+      return &cylinders[hit.primID];
   }
 }
 
-Sighting Stage::Implementation::sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const {
+Surface Stage::Implementation::surface_of(const RTCHit& hit, const Vector3& eye) const {
   const PlacedPart* const part = part_hit(hit);
-  if (!part) return tube_sighting(segments[hit.primID], ray, lowest, t, footprint);
-  const Meeting otherwise{t, -ray.direction.normalized()};
-  if (hit.instID[0] == RTC_INVALID_GEOMETRY_ID)
-    return part_sighting(*part, ray, meet(part->shape, part->inside(ray), lowest).value_or(otherwise), footprint);
-  const auto [a, b, c] = corners(*part, hit.primID);
-  Meeting meeting = meet_plane_of(a, b, c, ray).value_or(otherwise);
-  meeting.normal = part->axes.transpose() * meeting.normal;
-  return part_sighting(*part, ray, meeting, footprint);
+  if (!part) {
+    const TubeSegment& segment = segments[hit.primID];
+    Surface surface{segment.thing, segment.paint, nullptr, &segment, Surface::Form::round};
+    surface.line = &lines[hit.primID];
+    return surface;
+  }
+  Surface surface{part->thing, part->paint, part};
+  if (hit.instID[0] != RTC_INVALID_GEOMETRY_ID) {
+    const auto [a, b, c] = corners(*part, hit.primID);
+    surface.numbers = facing((b - a).cross(c - a).normalized(), a, eye);
+  } else if (hit.geomID == boxes_id) {
+    const unsigned face = hit.primID % triangles_of_box / 2;
+    const int axis = face_axes[face];
+    const Vector3 outwards = face % 2 ? part->axes.col(axis) : Vector3(-part->axes.col(axis));
+    const double half = 0.5 * std::get<BoxShape>(part->shape).size[axis];
+    surface.numbers = facing(outwards, part->pose.position + half * outwards, eye);
+  } else if (hit.geomID == lines_id) {
+    surface.form = Surface::Form::round;
+    surface.line = &lines[hit.primID];
+  } else {
+    surface.form = Surface::Form::cylinder;
+  }
+  return surface;
 }
 
 Stage::Implementation::Housing Stage::Implementation::around(const Vector3& point) const {
   constexpr double reach = 1e-6;  // [m]
   Housing found;
-  for (const auto* group : {&boxes, &solids, &meshes})
+  for (const auto* group : {&boxes, &rounds, &cylinders, &meshes})
     for (const PlacedPart& part : *group)
       if (closest_point(part.shape, part.inside(point), reach).distance < reach) found.push_back(&part);
   return found;
 }
 
-RTCRayHit Stage::Implementation::cast(const Ray& ray, double& lowest, double highest, const Housing& housing) const {
+RTCRayHit Stage::Implementation::cast(const Ray& ray, double highest, const Housing& housing) const {
   constexpr double onwards = 1e-6;  // of t, and [1]: by so much a surface is left that a ray passes through
   const Eigen::Vector3f start = (ray.origin - origin).cast<float>(), direction = ray.direction.cast<float>();
+  double lowest = 0;
   for (;;) {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
@@ -409,17 +440,17 @@ RTCRayHit Stage::Implementation::cast(const Ray& ray, double& lowest, double hig
   }
 }
 
-bool Stage::Implementation::is_blocked(const Ray& ray, double highest, const Housing& housing) const {
-  double lowest = 0;
-  return cast(ray, lowest, highest, housing).hit.geomID != RTC_INVALID_GEOMETRY_ID;
-}
-
-Sighting Stage::Implementation::look(const Ray& ray, double highest, const Housing& housing, double footprint) const {
-  const PlaneMeeting plane = meet_planes(ray, highest);
-  double lowest = 0;
-  const RTCRayHit found = cast(ray, lowest, plane.t, housing);
-  if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID) return sighting(ray, lowest, found.hit, found.ray.tfar, footprint);
-  return plane.plane >= 0 ? plane_sighting(ray, plane, footprint) : Sighting{};
+Sighting Stage::Implementation::look(const Ray& ray, double highest, const Housing& housing) const {
+  int plane = -1;
+  for (std::size_t i = 0; i < planes.size(); ++i) {
+    const PlaneNumbers numbers = numbers_of(planes[i], ray.origin);
+    const double slope = -Vector3(numbers.normal).dot(ray.direction), depth = -numbers.height;
+    // From their outside only.
+    if (slope > 0 && depth >= 0 && depth < slope * highest) plane = planes[i].thing, highest = depth / slope;
+  }
+  const RTCRayHit found = cast(ray, highest, housing);
+  if (found.hit.geomID != RTC_INVALID_GEOMETRY_ID) return {surface_of(found.hit, ray.origin).thing, found.ray.tfar};
+  return {plane, highest};
 }
 
 Stage::Stage(Drawing drawing, const Stage* before) {

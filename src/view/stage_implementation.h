@@ -3,12 +3,15 @@
 #include <embree3/rtcore.h>
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <deque>
 #include <map>
 #include <memory>
 #include <vector>
 
 #include "closed_forms.h"
+#include "packets/passes.h"
 #include "verlet_cable/view/stage.h"
 
 namespace verlet_cable::view {
@@ -18,24 +21,12 @@ struct Paint {
   explicit Paint(const Look& of);
 
   Look look;
-  Vector3 color, second_color;
+  PaintNumbers numbers;
 };
 
-/// What a ray meets.
-struct Sighting {
-  int thing = -1;  ///< index into Drawing::things; -1: nothing
-  double t = 0;    ///< of the ray
-  Vector3 normal = Vector3::UnitZ();
-  const Paint* paint = nullptr;
-  double second_color = 0;  ///< 0 to 1: how much of the paint's second color there is
-
-  explicit operator bool() const { return thing >= 0; }
-};
-
-/// A segment of a tube, as rays meet it.
+/// A segment of a tube.
 struct TubeSegment {
   int thing = 0;
-  RoundLine line;  ///< fixed frame
   const Paint* paint = nullptr;
   // Where the stripes are. None where there are none.
   bool is_striped = false;
@@ -56,6 +47,25 @@ struct PlacedPart {
 
   Vector3 inside(const Vector3& point) const { return axes.transpose() * (point - pose.position); }
   Ray inside(const Ray& ray) const { return {inside(ray.origin), axes.transpose() * ray.direction}; }
+};
+
+/// A surface that a ray meets, as it is seen from the eye.
+struct Surface {
+  enum class Form { flat, round, cylinder };
+
+  int thing = -1;  ///< index into Drawing::things
+  const Paint* paint = nullptr;
+  const PlacedPart* part = nullptr;      ///< null for tubes
+  const TubeSegment* segment = nullptr;  ///< of tubes
+  Form form = Form::flat;
+  PlaneNumbers numbers{};           ///< of flat ones, which face the eye
+  const RoundLine* line = nullptr;  ///< of round ones
+};
+
+/// What a ray meets.
+struct Sighting {
+  int thing = -1;  ///< index into Drawing::things; -1: nothing
+  double t = 0;    ///< of the ray
 };
 
 /// Of a color as in an image (IEC 61966-2-1), in proportion to light.
@@ -85,31 +95,28 @@ struct Stage::Implementation {
   Drawing drawing;
   /// [m] Of what Embree sees, which has single precision, in the fixed frame: amid what there is.
   Vector3 origin = Vector3::Zero();
-  Vector3 to_sun = Vector3::UnitZ();  ///< unit
-  Vector3 background;                 ///< in proportion to light
-  std::deque<Paint> paints;           ///< where others point to
+  Vector3 to_sun = Vector3::UnitZ();       ///< unit
+  std::array<std::uint8_t, 3> background;  ///< as images have it
+  std::deque<Paint> paints;                ///< where others point to
+  /// What is round: first the tubes' segments, then spheres and capsules. Each as rays meet it, in the fixed frame.
+  std::vector<RoundLine> lines;
   std::vector<TubeSegment> segments;
+  std::vector<PlacedPart> rounds;
   std::vector<PlacedPart> planes;  ///< which have no bounds
   std::vector<PlacedPart> boxes;
-  std::vector<PlacedPart> solids;  ///< round ones
+  std::vector<PlacedPart> cylinders;
   std::vector<PlacedPart> meshes;
   std::map<const TriangleMesh*, std::shared_ptr<const MeshTree>> trees;
   RTCScene scene = nullptr;
 
   /// By which Embree names what it has hit: the geometry's id.
-  static constexpr unsigned tubes_id = 0, boxes_id = 1, solids_id = 2, first_mesh_id = 3;
+  static constexpr unsigned lines_id = 0, boxes_id = 1, cylinders_id = 2, first_mesh_id = 3;
 
-  /// The nearest plane that a ray meets before t = `highest`. Its index, or -1, and where.
-  struct PlaneMeeting {
-    int plane = -1;
-    double t;
-  };
-  PlaneMeeting meet_planes(const Ray& ray, double highest) const;
-  /// What a ray meets there.
-  Sighting plane_sighting(const Ray& ray, const PlaneMeeting& meeting, double footprint) const;
-  /// What a ray meets where Embree has hit something at about `t`, in double precision. `lowest`: as of the ray; `footprint` [1]:
-  /// the size of a pixel at t = 1, by which patterns are blurred; 0 where colors are not asked for.
-  Sighting sighting(const Ray& ray, double lowest, const RTCHit& hit, double t, double footprint) const;
+  /// The plane, above the eye along its normal.
+  PlaneNumbers numbers_of(const PlacedPart& plane, const Vector3& eye) const;
+  Surface surface_of_plane(int index, const Vector3& eye) const;
+  /// Of what Embree has hit. Not with housings.
+  Surface surface_of(const RTCHit& hit, const Vector3& eye) const;
 
   /// Parts, but for planes, that rays pass through.
   using Housing = std::vector<const PlacedPart*>;
@@ -119,24 +126,23 @@ struct Stage::Implementation {
   bool is_of(const Housing& housing, const RTCHit& hit) const {
     return !housing.empty() && std::find(housing.begin(), housing.end(), part_hit(hit)) != housing.end();
   }
-  /// Whether a ray meets anything but planes before t = `highest`.
-  bool is_blocked(const Ray& ray, double highest, const Housing& housing) const;
-  /// What one ray meets first, before t = `highest`.
-  Sighting look(const Ray& ray, double highest, const Housing& housing, double footprint) const;
+  /// Where a ray meets anything but planes, before t = `highest`; geomID: RTC_INVALID_GEOMETRY_ID where it does not.
+  RTCRayHit cast(const Ray& ray, double highest, const Housing& housing) const;
+  /// What one ray meets first, before t = `highest`, in single precision.
+  Sighting look(const Ray& ray, double highest, const Housing& housing) const;
 
  private:
   /// Null for tubes.
   const PlacedPart* part_hit(const RTCHit& hit) const;
-  /// Where a ray meets something else than planes, from t = `lowest` on; that is raised past what rays pass through.
-  RTCRayHit cast(const Ray& ray, double& lowest, double highest, const Housing& housing) const;
   std::vector<PlacedPart>& group_of(const Shape& shape);
   void place(const Thing& thing, int index);
   void place(const Tube& tube, const Paint& paint, int index);
+  void collect_rounds();
   void find_origin();
   void build(const Implementation* before);
-  void add_tubes();
+  void add_lines();
   void add_boxes();
-  void add_solids();
+  void add_cylinders();
   void add_meshes(const Implementation* before);
 };
 
