@@ -56,6 +56,32 @@ def test_a_motion_has_the_derivatives_of_differences():
         assert numpy.linalg.norm(found[name][..., 0] - expected) < part * numpy.linalg.norm(expected), name
 
 
+def loaded(change='', by=0):
+    """A hose that stretches, with a weight on it, held by one hand at its start and in its middle and by a peg; one number is changed."""
+    scene = hose(axial_stiffness=2e3, axial_damping=2, bending_damping=2e-4)
+    cable, material = scene['cables'][0], scene['materials']['m']
+    if change in material:
+        material[change] += by
+    if change == 'length':
+        cable['length'] += by
+    at = cable['length'] / 0.6  # places on it grow with it
+    cable['point_masses'] = [{'at': 0.45 * at, 'mass': 0.03}]
+    cable['attachments'].append({'name': 'middle', 'at': 0.25 * at, 'offset': [0.2, 0, -0.02], 'frame': 'hand', 'type': 'hinge'})
+    return scene
+
+
+@pytest.mark.parametrize('parameter, change', [
+    ('length', 6e-6), ('linear_density', 8e-6), ('drag', 5e-6), ('bending_stiffness', 2e-6), ('bending_damping', 2e-7),
+    ('axial_stiffness', 0.2), ('axial_damping', 2e-3)])
+def test_a_loaded_hose_in_three_holders_has_the_derivatives_of_differences(parameter, change):
+    world = world_of(loaded())
+    world.track_sensitivity(parameter + ':hose')
+    found = swing(world, 100).sensitivity('positions:hose')[..., 0]
+    more, less = (swing(world_of(loaded(parameter, sign * change)), 100).positions('hose') for sign in (1, -1))
+    expected = (more - less) / (2 * change)
+    assert numpy.linalg.norm(found - expected) < 1e-4 * numpy.linalg.norm(expected)
+
+
 def test_forces_of_an_equilibrium_are_those_on_its_holders():
     """The weight that comes with a heavier hose hangs on both holders."""
     world = world_of(hose(drag=0))
@@ -113,6 +139,16 @@ def test_what_is_not_known_is_refused_and_changes_nothing():
     assert world.sensitivity('positions:hose').shape == (13, 3, 1)
     with pytest.raises(ValueError, match='copy'):
         Batch(Scene.from_dict(HOSE), 2).worlds[0].track_sensitivity('drag:hose')
+
+
+def test_derivatives_end_where_a_state_is_given():
+    """It does not depend on anything, even if it is the one that there was."""
+    world = world_of(HOSE)
+    world.track_sensitivity('drag:hose')
+    swing(world, 5)
+    world.set_state('hose', world.positions('hose'), world.velocities('hose'))
+    with pytest.raises(ValueError, match='edited.*track_sensitivity'):
+        world.sensitivity('positions:hose')
 
 
 def test_derivatives_end_with_an_edit():

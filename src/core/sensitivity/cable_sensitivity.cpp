@@ -107,7 +107,8 @@ std::string CableSensitivity::settle(const State& state) {
       e.evaluate();
       if (is_first && !e.factor()) return "its equilibrium is not unique";
       const double size = e.solve(columns_.front().equations);
-      if (!(size < allowed)) return "it is not in equilibrium; allowed: a cable at rest, as after settle()";
+      if (!(size < allowed))
+        return "it is not in equilibrium; allowed: a cable at rest, as after settle(), longer than the way between its holders";
       if (!is_first || iteration == newton_iterations) break;
       for (int i = 0; i <= n; ++i) places[i] += e.correction()[i];
       for (int i = 0; i < n; ++i) densities[i] += e.density_correction()[i];
@@ -145,9 +146,9 @@ std::string CableSensitivity::changed(const State& state) const {
   const auto is_same = [](const auto& a, const auto& b) { return a.attachment == b.attachment && a.node == b.node; };
   const auto are_same = [&](const auto& a, const auto& b) { return std::equal(a.begin(), a.end(), b.begin(), b.end(), is_same); };
   const bool is_as_it_was = cable.model == before_.model && scene_ == state.scene && now.positions == before.positions &&
-                            now.velocities == before.velocities && now.rest_lengths == before.rest_lengths &&
-                            now.masses == before.masses && are_same(targets.nodes, targets_.nodes) &&
-                            are_same(targets.directions, targets_.directions);
+                            now.velocities == before.velocities && now.accelerations == before.accelerations &&
+                            now.rest_lengths == before.rest_lengths && now.masses == before.masses &&
+                            are_same(targets.nodes, targets_.nodes) && are_same(targets.directions, targets_.directions);
   return is_as_it_was ? "" : "it was edited or tuned, or the world was settled";
 }
 

@@ -74,7 +74,7 @@ Output read_output(const World& world, const Sensitivity& sensitivity, const std
   }
   if (const std::string lost = sensitivity.lost(world, output.cable); !lost.empty())
     throw py::value_error("outputs: " + quoted(text) + " has no derivatives any longer, " + lost +
-                          "; allowed: cables of which derivatives are followed");
+                          "; allowed: cables of which derivatives are followed, as anew after another track_sensitivity()");
   std::size_t size = static_cast<std::size_t>(sensitivity.columns());
   for (const py::ssize_t length : output.shape) size *= static_cast<std::size_t>(length);
   output.derivatives.resize(size);
