@@ -8,7 +8,7 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr int maximum_iterations = 40;
+constexpr int body_iterations = 40;
 /// Of the tolerance of cables: bodies are heavier, and what is left over works on them.
 constexpr double body_part = 1e-3;
 /// The same where bodies hold bodies: a joint's multiplier follows what is left.
@@ -87,7 +87,7 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
   const double part = joints_.all().empty() ? body_part : joint_part;
   Convergence convergence(part * tolerance, rules_.h, rules_.statics);
   bool stale = true;
-  for (int i = 0; i < maximum_iterations; ++i) {
+  for (int i = 0; i < body_iterations; ++i) {
     place_holders(participants);
     for (Participant& p : participants) {
       p.stepper->evaluate(p.substep, *p.state);

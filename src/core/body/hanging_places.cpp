@@ -17,7 +17,7 @@ using Eigen::VectorXd;
 
 /// [of all that pulls] What is tight yields by one part of its length at so much tension, first to last.
 constexpr std::array<double, 4> tightness{10, 1e3, 1e5, 1e7};
-constexpr int maximum_iterations = 300, maximum_force_iterations = 200, halvings = 40;
+constexpr int hanging_iterations = 300, maximum_force_iterations = 200, halvings = 40;
 constexpr double force_tolerance = 1e-13;  // of a span's length
 constexpr double rest_tolerance = 1e-10;   // of the size of all
 /// [of a span's weight] Links that bear less are slack.
@@ -29,7 +29,7 @@ constexpr double least_stiffness = 1e-9;
 constexpr double largest_turn = 0.3;  // [rad] in an iteration
 constexpr double shift_growth = 4;
 constexpr double enough = 1e-4;  // of what a step promises
-constexpr double rounding = 1e-13;
+constexpr double rounding_of_pull = 1e-13;
 
 /// A chain's complementary energy at the force at its end, and its derivatives: where the end is, and how it gives way.
 struct Complementary {
@@ -94,11 +94,11 @@ SpanEnergy energy_of(const HangingSpan& span, const Vector3& down, const Vector3
     for (int k = 0; k < halvings; ++k, part *= 0.5) {
       next = at(pulled.force + part * change);
       const double next_value = next.energy - (pulled.force + part * change).dot(way);
-      if (next_value <= value - enough * part * gain + rounding * (std::abs(value) + std::abs(next.energy))) break;
+      if (next_value <= value - enough * part * gain + rounding_of_pull * (std::abs(value) + std::abs(next.energy))) break;
     }
     pulled.force += part * change;
     now = next;
-    if (part * change.norm() <= rounding * pulled.force.norm()) break;
+    if (part * change.norm() <= rounding_of_pull * pulled.force.norm()) break;
   }
   return {pulled.force.dot(way) - now.energy, pulled.force, now.compliance.ldlt().solve(Matrix3d::Identity())};
 }
@@ -355,7 +355,7 @@ class Hanging {
   void relax() {
     double shift = least_stiffness;
     double energy = evaluate(true);
-    for (int i = 0; i < maximum_iterations; ++i) {
+    for (int i = 0; i < hanging_iterations; ++i) {
       shift = std::max(shift / shift_growth, least_stiffness);
       while (std::isfinite(shift) && !factor_.factor(matrix_, shift * scale_)) shift *= shift_growth;
       if (!std::isfinite(shift)) return;  // sizes beyond what numbers can tell apart
@@ -373,7 +373,7 @@ class Hanging {
         bodies_ = before;
         move(part * step);
         next = evaluate(false);
-        if (next <= energy + enough * part * slope + rounding * pull_ * size_) break;
+        if (next <= energy + enough * part * slope + rounding_of_pull * pull_ * size_) break;
       }
       if (part < 1) shift *= shift_growth * shift_growth;
       energy = evaluate(true);

@@ -11,7 +11,7 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr int maximum_iterations = 60;
+constexpr int contact_iterations = 60;
 /// Error of a node's velocity at which an iteration ends, in segment lengths per second.
 constexpr double velocity_tolerance = 4e-3;
 /// Less where cables and bodies exchange momentum.
@@ -201,7 +201,7 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   for (const Participant& p : participants) told += p.stepper->told_energy(p.substep, *p.state);
   double last = 0;
   bool stale = true;
-  for (int i = 0; i < maximum_iterations && spent_ < most_work_; ++i) {
+  for (int i = 0; i < contact_iterations && spent_ < most_work_; ++i) {
     spend(budget::heavy, touches.size());
     if (i == following_iterations) hold_bounds(touches);
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);

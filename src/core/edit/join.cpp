@@ -21,7 +21,7 @@ constexpr double joining_speed = 2, joining_acceleration = 20;
 /// Of a segment's length: how near they are drawn before they are welded.
 constexpr double approach = 0.2;
 /// Relative, of what a cable between two holders must span.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_length = 1e-9;
 
 std::string text(const BendingStiffness& stiffness) {
   return stiffness.is_isotropic() ? number_text(stiffness.front()) : list_text(stiffness);
@@ -161,7 +161,7 @@ EditResult World::Implementation::apply(const edit::Join& join) {
     const double distance = (place(*end.next) - place(*other_end.next)).norm(), length = end.length + other_end.length;
     const bool is_rigid =
         !CableMaterials(state.cables[first]).any_elastic() && !CableMaterials(state.cables[second]).any_elastic();
-    if (is_rigid && distance > length * (1 + rounding))
+    if (is_rigid && distance > length * (1 + rounding_of_length))
       return refused("first, second: the ends cannot meet: " + name(*end.next) + " and " + name(*other_end.next) + " are " +
                      rounded_text(distance) + " m apart, the cable between them would be " + rounded_text(length) + " m long");
   }

@@ -15,7 +15,7 @@ namespace {
 /// That act at once.
 constexpr std::size_t most_loads = 10000;
 /// Steps that begin within a duration, as it is rounded.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_duration = 1e-9;
 
 /// What is wrong with a load, wherever it acts; empty if nothing is.
 std::string problem_of(const edit::ApplyLoad& load) {
@@ -78,7 +78,7 @@ EditResult World::Implementation::apply(const edit::ApplyLoad& request) {
   load.torque = request.torque;
   load.is_local = request.is_local;
   if (request.duration > 0) {
-    const double steps = std::ceil(request.duration / state.scene->time_step * (1 - rounding));
+    const double steps = std::ceil(request.duration / state.scene->time_step * (1 - rounding_of_duration));
     load.end_step = state.steps + std::max<std::int64_t>(1, static_cast<std::int64_t>(steps));
   }
   const EditResult result{true, "", load.name};

@@ -9,7 +9,7 @@ namespace {
 
 constexpr int most_iterations = 50;
 /// Corrections of the wave number that are smaller than this, relative, are rounding.
-constexpr double rounding = 1e-15;
+constexpr double rounding_of_wave_number = 1e-15;
 
 }  // namespace
 
@@ -22,7 +22,7 @@ double wave_number(double frequency, double gravity, double depth) {
   for (int i = 0; i < most_iterations; ++i) {
     const double t = std::tanh(x), change = (x * t - y) / (t + x * (1 - t * t));
     x -= change;
-    if (std::abs(change) <= rounding * x) break;
+    if (std::abs(change) <= rounding_of_wave_number * x) break;
   }
   return x / depth;
 }

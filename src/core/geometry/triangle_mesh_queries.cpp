@@ -17,7 +17,7 @@ struct Pending {
 using Stack = std::array<Pending, 64>;
 
 /// Closer than this to the surface [of the coordinates], the direction to it is rounding.
-constexpr double rounding = 1e-12;
+constexpr double rounding_of_surface = 1e-12;
 
 }  // namespace
 
@@ -44,7 +44,7 @@ SurfacePoint TriangleMesh::surface_point(const Vector3& point, const Vector3& on
   const bool inside = winding_ ? winding_number(point) > 0.5 : pseudonormal.dot(arm) < 0;
   const double sign = inside ? -1 : 1;
   // What is open may be touched from the side that a triangle faces away from, and not be inside.
-  if ((feature != whole_face || winding_) && length > rounding * on_surface.cwiseAbs().maxCoeff())
+  if ((feature != whole_face || winding_) && length > rounding_of_surface * on_surface.cwiseAbs().maxCoeff())
     return {sign * length, on_surface, sign / length * arm};
   return {sign * length, on_surface, pseudonormal};
 }
@@ -52,7 +52,7 @@ SurfacePoint TriangleMesh::surface_point(const Vector3& point, const Vector3& on
 SurfacePoint TriangleMesh::sheet_point(const Vector3& point, const Vector3& on_surface, const Vector3& otherwise) const {
   const Vector3 arm = point - on_surface;
   const double length = arm.norm();
-  if (length > rounding * on_surface.cwiseAbs().maxCoeff()) return {length, on_surface, arm / length};
+  if (length > rounding_of_surface * on_surface.cwiseAbs().maxCoeff()) return {length, on_surface, arm / length};
   return {length, on_surface, otherwise};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 /// Shorter cables have no room for two lanes.
 constexpr int fewest_segments = 4;
-constexpr int maximum_iterations = 40;
+constexpr int lane_iterations = 40;
 /// A matrix serves so many iterations; what has not converged then moves so violently that every one needs its own.
 constexpr int iterations_of_first_matrix = 4;
 /// Sides of clamps; a cable with more of them takes its memory in its first step.
@@ -284,7 +284,7 @@ void LaneStepper::iterate(std::vector<LaneMember>& members) {
   for (const LaneMember& member : members) convergences_.emplace_back(member.substep);
   const int count = static_cast<int>(members.size());
   int active = count;
-  for (int i = 0; i < maximum_iterations && active > 0; ++i) {
+  for (int i = 0; i < lane_iterations && active > 0; ++i) {
     if (work_.law.bends)
       for (int c = 0; c < count; ++c) bend_clamps(c, members[c]);
     if (work_.law.is_damped) turn_with_material(count);

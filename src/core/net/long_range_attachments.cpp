@@ -13,10 +13,10 @@ namespace {
 /// More would cost more than they help.
 constexpr std::size_t most_tethers = 3;
 
-struct Front {
+struct Arrival {
   double length = 0;  ///< [m]
   int node = 0, held = 0, links = 0;
-  bool operator>(const Front& other) const {
+  bool operator>(const Arrival& other) const {
     return std::tie(length, node, held) > std::tie(other.length, other.node, other.held);
   }
 };
@@ -46,9 +46,9 @@ void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldN
   const std::vector<std::vector<Neighbour>> neighbours = find_neighbours(model);
   std::vector<std::vector<Way>> reached_from(model.masses.size());
   std::vector<std::vector<Way>> waiting(model.masses.size());
-  std::priority_queue<Front, std::vector<Front>, std::greater<>> ways;
+  std::priority_queue<Arrival, std::vector<Arrival>, std::greater<>> ways;
   // What is no shorter than another that waits, from the same held node, would come to nothing.
-  const auto push = [&](const Front& way) {
+  const auto push = [&](const Arrival& way) {
     if (reached_from[way.node].size() == most_tethers) return;
     std::vector<Way>& known = waiting[way.node];
     const auto same = std::find_if(known.begin(), known.end(), [&](const Way& other) { return other.held == way.held; });
@@ -61,7 +61,7 @@ void LongRangeAttachments::resize(const NetModel& model, const std::vector<HeldN
   };
   for (std::size_t k = 0; k < held.size(); ++k) push({0, held[k].node, static_cast<int>(k), 0});
   while (!ways.empty()) {
-    const Front way = ways.top();
+    const Arrival way = ways.top();
     ways.pop();
     std::vector<Way>& from = reached_from[way.node];
     const auto known = [&](const Way& other) { return other.held == way.held; };

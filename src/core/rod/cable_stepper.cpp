@@ -16,7 +16,7 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr int maximum_iterations = 40;
+constexpr int step_iterations = 40;
 /// A correction that shrinks less than this from one iteration to the next calls for a new factorisation.
 constexpr double slow_convergence = 0.1;
 /// Of the lengths of such spans, relative.
@@ -298,7 +298,7 @@ void CableStepper::predict(double h) {
 bool CableStepper::solve(const Substep& s, const CableState& state, SubstepResult& result) {
   Convergence convergence(s);
   bool stale = true;
-  for (int i = 0; i < maximum_iterations; ++i) {
+  for (int i = 0; i < step_iterations; ++i) {
     evaluate(s, state);
     if (stale || calls_for_matrix()) {
       assemble(s.part());

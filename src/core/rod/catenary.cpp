@@ -14,7 +14,7 @@ namespace {
 using Eigen::Matrix2d;
 using Eigen::Vector2d;
 
-constexpr int maximum_iterations = 200;
+constexpr int catenary_iterations = 200;
 constexpr int halvings = 60;
 constexpr double straight = 1 - 1e-12;        // of the length: from there on a line
 constexpr double position_tolerance = 1e-14;  // of the length
@@ -64,7 +64,7 @@ ChainEnd chain_end(const Chain& chain, const Vector2d& first) {
 void solve(const Chain& chain, const Vector2d& span, Vector2d& force) {
   constexpr double beyond = 0.1, before = 0.5;  // of the slope at the start of a step
   ChainEnd end = chain_end(chain, force);
-  for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
+  for (int iteration = 0; iteration < catenary_iterations; ++iteration) {
     const Vector2d miss = span - end.position;
     if (miss.norm() < position_tolerance) return;
     const Vector2d change = end.slope.fullPivLu().solve(miss);

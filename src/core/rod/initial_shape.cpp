@@ -28,7 +28,7 @@ std::vector<Vector3> straight_line(const Vector3& from, const Vector3& direction
 /// The bight of a cable that is to be settled is at least so wide [of its length].
 constexpr double width_to_settle = 0.2;
 /// Of a segment's length.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_slack = 1e-9;
 
 /// A place like `to`, but not so nearly above or below `from` that the bight of a chain of that length between the two would be
 /// less than `width` wide [m].
@@ -67,7 +67,7 @@ std::vector<Vector3> hanging(const CableModel& model, const CableState& state, c
     double width = folds == Folds::anywhere ? 0 : width_to_settle * length;
     // Side by side: folded onto itself it would carry a body, as a column does. With less slack its last link stands askew.
     const double slack = length - (to - from).norm(), shortest = *std::min_element(lengths.begin(), lengths.end());
-    if ((held[k].body >= 0 || held[k + 1].body >= 0) && slack > (2 - rounding) * shortest)
+    if ((held[k].body >= 0 || held[k + 1].body >= 0) && slack > (2 - rounding_of_slack) * shortest)
       width = std::max(width, 2 * materials.largest([](const MaterialDesc& material) { return material.radius; }));
     const Vector3 end = moved_apart(from, to, down, length, width);
     std::vector<Vector3> span = hanging_chain(from, end, lengths, weights, down, axial_stiffness);

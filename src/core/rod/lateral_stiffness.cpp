@@ -11,7 +11,7 @@ namespace {
 
 constexpr int bisections = 40;
 /// Of what tension does to a single node.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_stiffness = 1e-9;
 /// The shift of the matrix, as a multiple of the one at which it is just positive: modes that grow slowly have their part, too.
 constexpr double beyond_singular = 1.5;
 
@@ -27,7 +27,8 @@ LateralStiffness::LateralStiffness(const CableModel& model, const CableState& st
     add(k - 1, k - 1, stiffness);
     add(k, k, stiffness);
     add(k - 1, k, -stiffness);
-    rounding_ = std::max(rounding_, rounding * std::abs(stiffness) / state.masses[std::max(span.first + k, span.first + 1)]);
+    rounding_ =
+        std::max(rounding_, rounding_of_stiffness * std::abs(stiffness) / state.masses[std::max(span.first + k, span.first + 1)]);
   }
   for (int i = span.first + 1; i < span.last; ++i) {
     const double before = state.rest_lengths[i - 1], after = state.rest_lengths[i];

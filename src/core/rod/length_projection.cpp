@@ -12,11 +12,12 @@ namespace verlet_cable {
 
 namespace {
 
-constexpr int maximum_iterations = 100;
-constexpr double length_tolerance = 1e-12;                               // relative, of squares
-constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
-constexpr double straight = 1 - 1e-7;                                    // of a span's length
-constexpr double regularisation = 1e-12;  // as length_rate_regularisation, of what is solved again and again
+constexpr int projection_iterations = 100;
+constexpr double length_tolerance = 1e-12;  // relative, of squares
+constexpr double rounding_of_position =
+    8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
+constexpr double straight = 1 - 1e-7;            // of a span's length
+constexpr double regularisation = 1e-12;         // as length_rate_regularisation, of what is solved again and again
 
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s². Segments of length 0 in `lengths`, one a
 /// segment or none, are free to have any.
@@ -123,7 +124,7 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
   const Vector3 origin = state.positions.front();
   std::vector<Vector3> local;
   for (const Vector3& position : state.positions) local.push_back(position - origin);
-  for (int iteration = 0; iteration < maximum_iterations; ++iteration) {
+  for (int iteration = 0; iteration < projection_iterations; ++iteration) {
     double error = 0, extent = 0;
     for (const Vector3& place : local) extent = std::max(extent, place.cwiseAbs().maxCoeff());
     for (int i = 0; i < n; ++i) {
@@ -131,7 +132,7 @@ bool project_lengths(const std::vector<HeldNode>& held, const std::vector<double
       // A segment is not asked to grow or shrink by more than a part of itself at a time: Newton's model holds no further.
       changes[i] = 0.5 * std::clamp(target - square, -0.75 * square, 0.75 * std::max(square, 0.01 * target));
       if (!std::isfinite(square) || !std::isfinite(target)) return false;  // std::max would lose what is not a number
-      const double tolerated = std::max(length_tolerance, rounding * extent / lengths[i]);
+      const double tolerated = std::max(length_tolerance, rounding_of_position * extent / lengths[i]);
       if (system.movable(i)) error = std::max(error, std::abs(target - square) / (tolerated * target));
     }
     if (error < 1) {

@@ -12,7 +12,7 @@ constexpr int most_changes = 8;
 /// Of what inertia resists with in the substep: less is no stiffness.
 constexpr double least_stiffness = 1e-6;
 /// Of the segment's length: what is wanted beyond a bound by less is rounding.
-constexpr double rounding = 1e-7;
+constexpr double rounding_of_winch = 1e-7;
 /// Of the tension; it is kept as well as this. And of what strains it by rounding.
 constexpr double kept_part = 1e-5, rounding_strain = 1e-10;
 
@@ -127,7 +127,7 @@ double CableStepper::kept_tension_error(const Substep& s, double end, double wan
 bool CableStepper::winch_is_consistent(const Substep& s) const {
   const int i = winch_.segment;
   const double end = (get(segment_, i) + get(displacement_, i + 1) - get(displacement_, i)).norm();
-  const double wanted = wanted_by_winch(s, end), slack = rounding * target_length_[i];
+  const double wanted = wanted_by_winch(s, end), slack = rounding_of_winch * target_length_[i];
   const double rounded = is_elastic_at(i) ? rounding_strain * axial_stiffness_[i] : slack * winch_resistance();
   if (winch_.mode == WinchMode::keeps || is_elastic_at(i))
     if (!(std::abs(kept_tension_error(s, end, wanted)) <= kept_part * winch_.law.tension + rounded)) return false;

@@ -13,7 +13,7 @@ namespace {
 /// Further apart than this is worth a report [relative]: cables that are taut may be strained by a tenth of it.
 constexpr double reported_stretch = 1e-6;
 /// Of places far from the origin, which is no stretch [relative].
-constexpr double rounding = 8 * std::numeric_limits<double>::epsilon();
+constexpr double rounding_of_places = 8 * std::numeric_limits<double>::epsilon();
 
 }  // namespace
 
@@ -78,7 +78,7 @@ void each_rigid_span(const CableModel& model, const CableState& state, const std
     span.last = held[next].node;
     if (materials.any_elastic_between(span.first, span.last)) continue;
     span.length = state.length(span.first, span.last);
-    span.rounding = rounding * held[k].position.cwiseAbs().maxCoeff();
+    span.rounding = rounding_of_places * held[k].position.cwiseAbs().maxCoeff();
     visit(span);
   }
 }

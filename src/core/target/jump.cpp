@@ -21,7 +21,7 @@ constexpr double averaging_time = 0.02;
 constexpr double one_speed = 0.1;
 /// What might have been a jump and was a motion, as it lasted, ends without one if it does within this time [s].
 constexpr double shortly = 0.02;
-constexpr double rounding = 1e-6;
+constexpr double rounding_of_jump = 1e-6;
 
 /// Whether a jump may begin in a step with this mean velocity, and its velocity before. An acceleration that goes on is none, nor
 /// is what comes back from a change that was no jump.
@@ -31,7 +31,7 @@ bool may_begin_jump(const Vector3& mean, double time_step, double jump_speed, Ki
   if (target.left_for < shortly && !((mean - target.left_velocity).norm() > jump_speed)) return false;
   const double jerk = (change - target.change).norm();
   if (jerk <= jump_speed || jerk <= sudden * target.change.norm()) return false;
-  if (time_step > longest_jump * (1 + rounding) && change.norm() <= out_of_proportion * target.liveliness) return false;
+  if (time_step > longest_jump * (1 + rounding_of_jump) && change.norm() <= out_of_proportion * target.liveliness) return false;
   const Vector3 before = target.change.norm() <= steady_change ? target.mean_velocity : target.average_velocity;
   if (!((mean - before).norm() > jump_speed)) return false;
   target.mean_velocity = before;
@@ -42,7 +42,7 @@ bool may_begin_jump(const Vector3& mean, double time_step, double jump_speed, Ki
 /// the longest time with its whole first and last step, it does with parts of them if it has one speed.
 bool is_short(double excess, double time_step, const KinematicTarget& target) {
   const int steps = target.jumping_steps + 1;
-  const double longest = longest_jump / time_step * (1 + rounding);
+  const double longest = longest_jump / time_step * (1 + rounding_of_jump);
   // Two steps may both be parts: how long it lasted in them cannot be told.
   if (steps <= std::max(longest, 2.0)) return true;
   const double least = target.jumping_steps > 2 ? std::min(target.least_excess, target.last_excess) : target.last_excess;

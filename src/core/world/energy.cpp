@@ -17,7 +17,7 @@ namespace verlet_cable {
 namespace {
 
 /// Of an energy, which is a sum over many nodes.
-constexpr double rounding = 64 * std::numeric_limits<double>::epsilon();
+constexpr double relative_rounding = 64 * std::numeric_limits<double>::epsilon();
 
 double kinetic_energy_of_nodes(const CableState& cable) {
   double sum = 0;
@@ -125,7 +125,7 @@ double rounding_of_energy(const Island& island, const State& state) {
   double size = 0;
   for (const int cable : island.cables) size += std::abs(state.cable_progress[cable].energy);
   for (const int body : island.bodies) size += std::abs(state.body_progress[body].energy);
-  return rounding * size;
+  return relative_rounding * size;
 }
 
 }  // namespace

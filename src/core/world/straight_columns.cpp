@@ -19,7 +19,7 @@ constexpr double noticed_compression = 1e-9;
 /// Kinetic energy, of what is stored in the compression.
 constexpr double disturbance = 1e-6;
 /// Of the gravity: less across the span has no direction.
-constexpr double rounding = 1e-9;
+constexpr double rounding_of_gravity = 1e-9;
 /// Loads of less than so much of Euler's for hinges do not buckle a chain of segments, however it is held.
 constexpr double surely_stable = 0.5;
 constexpr int bisections = 40;
@@ -85,7 +85,7 @@ void for_each_column(int index, const State& state, const Place& place, const Fu
 Vector3 gravity_across(const Column& column, const SimulatedCable& cable, const State& state) {
   const Vector3 along = column.direction(), g = state.scene->gravity.at(cable.state.positions[column.first]);
   const Vector3 down = g - g.dot(along) * along;
-  return down.norm() > rounding * g.norm() ? down : Vector3(Vector3::Zero());
+  return down.norm() > rounding_of_gravity * g.norm() ? down : Vector3(Vector3::Zero());
 }
 
 /// A direction across a column: of whole rods that in which it bends most easily, else that of gravity, else any. Where there is
