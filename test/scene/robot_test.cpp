@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdlib>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 
@@ -127,6 +128,38 @@ TEST_F(Robot, linksOfCableSimAreAtZeroOrWhereTheMotionHasTheirParents) {
   EXPECT_LT((at({{"arm", moved}}, "tool").position - Vector3(1.4, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(at({{"tool", moved}}, "tool").position, Vector3(1, 0, 0));
   EXPECT_TRUE(unused_frames(scene, {{"base", moved}}).empty());
+}
+
+TEST_F(Robot, bytesOfOtherFramesAndLinksAreRefused) {
+  SceneDesc scene = read("{" + file() + "}", "hand");
+  FrameTrack moved;
+  moved.add(0, {{1, 0, 0}, Quaternion::Identity()});
+  ByteWriter written;
+  FrameSource(scene, {{"base", moved}}).write(written);
+  const std::string bytes = written.take();
+  const std::size_t ids = frame_names(scene).size();
+  const auto place_of_last = [ids](const std::string& from, std::size_t most_ids) {
+    ByteReader reader(from);
+    return FrameSource(reader, most_ids).at(0).at(ids - 1).pose.position;
+  };
+  const Vector3 as_written = place_of_last(bytes, ids);
+  EXPECT_EQ(place_of_last(bytes, ids + 3), as_written);
+  EXPECT_THROW(place_of_last(bytes, ids - 1), std::invalid_argument);
+  // Any four bytes that are taken for an index are refused, or are none.
+  for (std::size_t at = 0; at + sizeof(int) <= bytes.size(); ++at) {
+    for (const int index : {-2, 1000}) {
+      std::string forged = bytes;
+      std::memcpy(&forged[at], &index, sizeof index);
+      try {
+        EXPECT_TRUE(place_of_last(forged, ids).allFinite()) << at;
+      } catch (const std::invalid_argument&) {
+      }
+    }
+  }
+  const std::size_t first_id = sizeof(double) + sizeof(int) + sizeof(std::size_t);
+  std::string forged = bytes;
+  forged[first_id] = 100;
+  EXPECT_THROW(place_of_last(forged, ids), std::invalid_argument);
 }
 
 TEST_F(Robot, aLinkWithAGivenPoseCarriesThoseAfterIt) {
