@@ -87,8 +87,8 @@ std::vector<Resegmented> resegmented(const Problem& problem, const std::vector<d
 }
 
 /// Fits what the problem looks for. `on_markers`: where that is the centre line, the fit of the line through the markers, with
-/// which it begins; else null.
-FitResult fit_all(const Problem& problem, const std::vector<Recording>& as_numbered, bool cross_validated,
+/// which it begins; else null. The problem's markers come to where they are along the cable as it bends.
+FitResult fit_all(Problem& problem, const std::vector<Recording>& as_numbered, bool cross_validated,
                   const FitResult* on_markers) {
   std::vector<int> all(problem.recordings.size());
   std::iota(all.begin(), all.end(), 0);
@@ -99,6 +99,7 @@ FitResult fit_all(const Problem& problem, const std::vector<Recording>& as_numbe
   Estimate estimate = with_input_errors(problem, all, result.with_exact_inputs, for_parameters.corrections);
   result.values = std::move(estimate.values);
   result.confidence = std::move(estimate.confidence);
+  problem.settings.marker_places = std::move(estimate.marker_places);
   const auto errors = [&](const std::vector<FittedCable>& cables) {
     return Errors{prediction_errors(cables, as_numbered), prediction_errors(cables, problem.recordings)};
   };

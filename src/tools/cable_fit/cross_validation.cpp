@@ -53,10 +53,10 @@ std::vector<FittedCable> left_out_fits(const Problem& problem, const std::vector
     const std::vector<double> start = on_markers.empty()
                                           ? coarse_search(of_training, training)
                                           : with_markers_on_line(of_training.settings, on_markers[left_out.front()].values);
-    const std::vector<double> values =
-        with_input_errors(of_training, training, fit(of_training, training, start, for_predictions), for_predictions.corrections)
-            .values;
-    for (const int i : left_out) fits[i] = {of_training.settings, values};
+    const Estimate estimate =
+        with_input_errors(of_training, training, fit(of_training, training, start, for_predictions), for_predictions.corrections);
+    of_training.settings.marker_places = estimate.marker_places;
+    for (const int i : left_out) fits[i] = {of_training.settings, estimate.values};
   }
   return fits;
 }

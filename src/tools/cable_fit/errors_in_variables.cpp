@@ -23,10 +23,11 @@ constexpr double due_to_noise = 1.2;
 constexpr double longest_step = 0.3, far = 0.25;  // decades
 /// Of a standard deviation: a step this short ends the search.
 constexpr double short_step = 0.1;
-/// [decades / rad] What noise in a hand's direction leaves in logarithmic parameters beyond the first order, as measured with
-/// recordings of a known rod (fit_coverage).
+constexpr double singular = 1e-12;  ///< part of the largest eigenvalue of scaled normal equations
+/// [decades / rad] What noise in a hand's direction leaves in logarithmic parameters beyond all that is corrected, as measured
+/// with recordings of a known rod (fit_coverage).
 constexpr double of_direction = 0.15;
-constexpr int pairs = 2;  ///< of samples of the inputs' errors
+constexpr int roll_pairs = 2, pairs = 12;  ///< of samples: of the hands' roll, of all else
 /// Derivatives are good enough with so many segments.
 constexpr int segments_for_slopes = 24;
 
@@ -67,6 +68,22 @@ Eigen::VectorXd compared(const Prediction& prediction, const Recording& recordin
   return Eigen::Map<Eigen::VectorXd>(sums.data(), sums.size());
 }
 
+/// The markers' places with which a prediction's distances between neighbouring ones are as measured: those along the chords cut
+/// the bends. `places`: by the measured distances; `predicted_places`: where predictions have them.
+std::vector<double> places_along(const std::vector<double>& places, const std::vector<double>& predicted_places,
+                                 const std::vector<Prediction>& predictions) {
+  std::vector<double> along{0};
+  for (std::size_t marker = 1; marker < places.size(); ++marker) {
+    std::vector<double> chords;
+    for (const Prediction& prediction : predictions)
+      for (const std::vector<Vector3>& row : prediction.positions) chords.push_back((row[marker] - row[marker - 1]).norm());
+    const double arc = predicted_places[marker] - predicted_places[marker - 1], chord = median(std::move(chords));
+    along.push_back(along.back() + (places[marker] - places[marker - 1]) * (chord > 0 ? arc / chord : 1));
+  }
+  for (double& place : along) place /= along.back();
+  return along;
+}
+
 /// The estimate, as it is improved step by step.
 class Search {
  public:
@@ -87,6 +104,8 @@ class Search {
     mean_variance_ = variance / rows;
     alike_ = alike / rows;
     pull_ = Eigen::VectorXd::Zero(parameters());
+    correction_ = Eigen::VectorXd::Zero(parameters());
+    place_markers();
   }
 
   Estimate run(int most_steps) {
@@ -96,9 +115,8 @@ class Search {
       find_slopes();
       if (improve()) break;
     }
-    find_pull_of_uncertainty();
-    improve();
-    return {values_, confidence()};
+    correct_for_curvature();
+    return {values_, confidence(), usual_.settings.marker_places};
   }
 
  private:
@@ -111,6 +129,19 @@ class Search {
     SceneDesc scene = cable_scene(settings, values);
     scene.time_step *= time_step_share;
     return predict(scene, markers_of(settings, values), inputs_[recording].changed(errors));
+  }
+
+  void place_markers() {
+    std::vector<Prediction> predictions(recordings());
+    std::mutex mutex;
+    parallel_for(recordings(), [&](std::size_t i) {
+      predictions[i] = predicted(usual_, 1, i, values_, errors_[i]);
+      const std::lock_guard<std::mutex> lock(mutex);
+      usual_.simulated();
+    });
+    const std::vector<double> places =
+        places_along(usual_.settings.marker_places, markers_of(usual_.settings, values_).places, predictions);
+    for (Problem* problem : {&coarse_, &usual_, &fine_}) problem->settings.marker_places = places;
   }
 
   struct Slopes {
@@ -178,34 +209,99 @@ class Search {
 
   void find_slopes() { slopes_ = slopes_at(errors_).matrices; }
 
-  /// What is best for the most likely errors of the inputs is not best on the average over those that are possible still:
-  /// uncertain shaking of the hands, for which the cable is the less to blame the less it follows. The difference of the cost's
-  /// gradient and of the predictions, by pairs of samples that are opposite, from the errors' normal distribution.
-  void find_pull_of_uncertainty() {
+  /// A step of the search goes by tangents, and noise as large as this is felt beyond them. What is measured scatters about the
+  /// truth: where predictions bend away from their tangents, the estimate is off by as much on the average, the other way (Box
+  /// 1971). What is only supposed, the roll of the hands, is itself what scatters: of it, the cost counts as a mean over what is
+  /// possible still. Both by pairs of samples that are opposite, from the normal distribution of the estimate.
+  void correct_for_curvature() {
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal(0, 1);
-    pull_ = Eigen::VectorXd::Zero(parameters());
-    Vectors mean;  // of the differences
-    for (const Eigen::VectorXd& of_recording : differences_) mean.emplace_back(Eigen::VectorXd::Zero(of_recording.size()));
+    const auto drawn = [&](Eigen::Index count) {
+      Eigen::VectorXd numbers(count);
+      for (double& number : numbers) number = normal(random);
+      return numbers;
+    };
+    std::vector<Eigen::LLT<Eigen::MatrixXd>> solvers;
+    for (std::size_t i = 0; i < recordings(); ++i) solvers.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision());
+    const auto sampled = [&](std::size_t i) -> Eigen::VectorXd { return solvers[i].matrixU().solve(drawn(inputs_[i].count())); };
+    const Vectors most_likely = compared_at({values_}, {errors_}).front();
+    const Vectors bent = bend_of_measured(drawn, sampled, most_likely);
+    find_pull_of_roll(sampled, most_likely);
+    for (std::size_t i = 0; i < recordings(); ++i) differences_[i] -= bent[i];
+    const std::vector<double> before = values_;
+    improve();
+    for (Eigen::Index k = 0; k < parameters(); ++k) correction_[k] = values_[k] - before[k];
+  }
+
+  /// By how much predictions are off on the average as parameters and what is measured of the input are.
+  template <class Drawn, class Sampled>
+  Vectors bend_of_measured(const Drawn& drawn, const Sampled& sampled, const Vectors& most_likely) const {
+    const Step here = step(variance_);
+    const Eigen::VectorXd scale = scale_of(here.information);
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(scale.asDiagonal() * here.information * scale.asDiagonal());
+    const Eigen::VectorXd deviations =
+        parts.eigenvalues().cwiseMax(singular * parts.eigenvalues().maxCoeff()).cwiseSqrt().cwiseInverse();
+    std::vector<std::vector<double>> values;
+    std::vector<Vectors> errors;
     for (int pair = 0; pair < pairs; ++pair) {
+      Eigen::VectorXd change = scale.asDiagonal() * (parts.eigenvectors() * (deviations.asDiagonal() * drawn(parameters())));
+      for (Eigen::Index k = 0; k < parameters(); ++k) {
+        const Parameter& parameter = coarse_.parameters[k];
+        const double room = std::max(0.0, std::min(values_[k] - parameter.lowest, parameter.highest - values_[k]));
+        const double most = parameter.logarithmic ? std::min(room, longest_step) : room;
+        change[k] = std::clamp(change[k], -most, most);
+      }
+      Vectors samples;
+      for (std::size_t i = 0; i < recordings(); ++i) {
+        samples.emplace_back(sampled(i) - here.by_parameters[i] * change);
+        samples.back().tail(inputs_[i].roll_count()).setZero();
+      }
+      for (const double sign : {1.0, -1.0}) {
+        values.push_back(values_);
+        errors.push_back(errors_);
+        for (Eigen::Index k = 0; k < parameters(); ++k) values.back()[k] += sign * change[k];
+        for (std::size_t i = 0; i < recordings(); ++i) errors.back()[i] += sign * samples[i];
+      }
+    }
+    Vectors mean;
+    for (const Eigen::VectorXd& of_recording : most_likely) mean.emplace_back(-of_recording);
+    for (const Vectors& sample : compared_at(values, errors))
+      for (std::size_t i = 0; i < recordings(); ++i) mean[i] += sample[i] / (2 * pairs);
+    return mean;
+  }
+
+  /// The difference of the cost's gradient, and of the predictions.
+  template <class Sampled>
+  void find_pull_of_roll(const Sampled& sampled, const Vectors& most_likely) {
+    pull_ = Eigen::VectorXd::Zero(parameters());
+    for (int pair = 0; pair < roll_pairs; ++pair) {
       Vectors one, other, change;
       for (std::size_t i = 0; i < recordings(); ++i) {
-        const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance_ + inputs_[i].precision());
-        Eigen::VectorXd sample(inputs_[i].count());
-        for (double& number : sample) number = normal(random);
-        sample = solver.matrixU().solve(sample).eval();
+        Eigen::VectorXd sample = sampled(i);
+        change.emplace_back(input_slopes_[i] * sample);
+        sample.head(sample.size() - inputs_[i].roll_count()).setZero();
         one.emplace_back(errors_[i] + sample);
         other.emplace_back(errors_[i] - sample);
-        change.emplace_back(input_slopes_[i] * sample);
       }
       const Slopes by_one = slopes_at(one), by_other = slopes_at(other);
       for (std::size_t i = 0; i < recordings(); ++i) {
-        pull_ += (by_one.matrices[i] - by_other.matrices[i]).transpose() * change[i] / (2 * pairs * variance_);
-        mean[i] += (by_one.differences[i] + by_other.differences[i]) / (2 * pairs);
+        pull_ += (by_one.matrices[i] - by_other.matrices[i]).transpose() * change[i] / (2 * roll_pairs * variance_);
+        differences_[i] += (0.5 * (by_one.differences[i] + by_other.differences[i]) - most_likely[i]) / roll_pairs;
       }
     }
-    const Vectors most_likely = slopes_at(errors_).differences;
-    for (std::size_t i = 0; i < recordings(); ++i) differences_[i] += mean[i] - most_likely[i];
+  }
+
+  /// Differences of each recording, for each of some values and errors of the inputs.
+  std::vector<Vectors> compared_at(const std::vector<std::vector<double>>& values, const std::vector<Vectors>& errors) const {
+    std::vector<Vectors> result(values.size(), Vectors(recordings()));
+    std::mutex mutex;
+    parallel_for(values.size() * recordings(), [&](std::size_t n) {
+      const std::size_t which = n / recordings(), i = n % recordings();
+      result[which][i] = compared(predicted(coarse_, 1, i, values[which], errors[which][i]), coarse_.recordings[which_[i]]);
+      const std::lock_guard<std::mutex> lock(mutex);
+      coarse_.simulated();
+    });
+    return result;
   }
 
   /// Errors of segments and of time steps go with the square of their lengths: they cancel from two simulations, one of which has
@@ -231,15 +327,16 @@ class Search {
     Eigen::MatrixXd information;
     Eigen::VectorXd parameters;
     Vectors errors;
-    double left = 0;  ///< [m^2] mean square of the differences after it
+    Matrices by_parameters;  ///< of each recording, minus what the errors change with the parameters
+    double left = 0;         ///< [m^2] mean square of the differences after it
   };
 
   /// `variance` [m^2]: of the means that are compared.
   Step step(double variance) const {
     const Prior prior(coarse_.parameters, values_);
-    Step result{prior.slopes.transpose() * prior.slopes, {}, {}, 0};
+    Step result{prior.slopes.transpose() * prior.slopes, {}, {}, {}, 0};
     Eigen::VectorXd gradient = prior.slopes.transpose() * prior.values + pull_;
-    std::vector<Eigen::MatrixXd> by_parameters;
+    Matrices& by_parameters = result.by_parameters;
     Vectors alone;
     for (std::size_t i = 0; i < recordings(); ++i) {
       const Eigen::MatrixXd &by_input = input_slopes_[i], &slopes = slopes_[i];
@@ -315,13 +412,16 @@ class Search {
     return confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, count);
   }
 
-  /// The parameters, with what the noise of the hands' directions does to them beyond the first order.
+  /// The parameters, with what the noise of the hands' directions does to them beyond what is corrected, and with a correction as
+  /// uncertain as it is large: it is the first term of a series.
   std::vector<Parameter> with_unresolved_noise() const {
     const std::array<double, 2>& held = coarse_.settings.held;
     const double direction = std::sqrt(noise_variance_) / std::min(held[0], held[1]);
     std::vector<Parameter> result = coarse_.parameters;
-    for (Parameter& parameter : result)
-      if (parameter.logarithmic) parameter.unresolved = std::hypot(parameter.unresolved, of_direction * direction);
+    for (std::size_t k = 0; k < result.size(); ++k) {
+      const double of_noise = result[k].logarithmic ? of_direction * direction : 0;
+      result[k].unresolved = std::hypot(result[k].unresolved, of_noise, correction_[static_cast<Eigen::Index>(k)]);
+    }
     return result;
   }
 
@@ -329,7 +429,8 @@ class Search {
   std::vector<int> which_;
   std::vector<double> values_, input_slopes_at_;
   std::vector<InputErrors> inputs_;
-  Eigen::VectorXd pull_;                            // of what is uncertain in the inputs
+  Eigen::VectorXd pull_;                            // of the roll, which is uncertain
+  Eigen::VectorXd correction_;                      // of the parameters, beyond tangents
   Vectors errors_;                                  // a recording
   double noise_variance_ = 0;                       // [m^2] of a coordinate
   double mean_variance_ = 0, variance_ = 0;         // [m^2] of a mean that is compared: by noise, and as it counts
@@ -349,9 +450,9 @@ int most_simulations_with_input_errors(const Problem& problem, const std::vector
   const double variance = noise_variance(problem, recordings);
   Eigen::Index count = 0;
   for (const int i : recordings)
-    count += InputErrors(problem.recordings[i], problem.inputs[i], variance).count() + 1 +
-             most_steps * static_cast<Eigen::Index>(problem.parameters.size() + 3) +
-             (2 * pairs + 1) * static_cast<Eigen::Index>(problem.parameters.size() + 1);
+    count += most_steps * (InputErrors(problem.recordings[i], problem.inputs[i], variance).count() + 1 +
+                           static_cast<Eigen::Index>(problem.parameters.size() + 3)) +
+             2 * roll_pairs * static_cast<Eigen::Index>(problem.parameters.size() + 1) + 2 * pairs + 2;
   return static_cast<int>(count);
 }
 

@@ -11,6 +11,7 @@ namespace verlet_cable::cable_fit {
 struct Estimate {
   std::vector<double> values;          ///< a parameter, in its scale
   std::vector<Confidence> confidence;  ///< a parameter
+  std::vector<double> marker_places;   ///< fractions of the length, along the cable as it bends
 };
 
 /// Goes on from what predicts some of the recordings best to what is most likely true: the motion of the hands and the start,

@@ -55,7 +55,7 @@ FrameTrack rolled(const FrameTrack& track, const Eigen::VectorXd& angles) {
 
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Input& input) {
   const HeldEnds ends = held_ends(markers, input.recording);
-  return predict(cable, markers, input.recording, {rolled(ends.start, input.rolls[0]), rolled(ends.end, input.rolls[1])});
+  return predict(cable, markers, input.recording, {rolled(ends.start, input.rolls[0]), rolled(ends.end, input.rolls[1])}, true);
 }
 
 InputErrors::InputErrors(const Recording& recording, const Smoothed& input, double variance) : input_(input.recording) {

@@ -14,7 +14,7 @@ struct Input {
   std::array<Eigen::VectorXd, 2> rolls;  ///< [rad] of the hands, a row: more than they are taken to have
 };
 
-/// The prediction of a recording by such an input.
+/// The prediction of a recording by such an input, which starts along a smooth curve.
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Input& input);
 
 /// By how much a prediction's input may be off: numbers, each of which changes it by about as much as derivatives are taken over.
@@ -26,6 +26,8 @@ class InputErrors {
   InputErrors(const Recording& recording, const Smoothed& input, double variance);
 
   Eigen::Index count() const { return precision_.rows(); }
+  /// So many of them, the last ones, are the roll of the hands.
+  Eigen::Index roll_count() const { return 2 * roll_splines_.cols(); }
   /// The input, changed.
   Input changed(const Eigen::VectorXd& errors) const;
   /// What is known of them without a model: the inverse of their covariance.

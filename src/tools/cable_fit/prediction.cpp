@@ -66,14 +66,15 @@ Prediction simulate(World& world, const FrameSource& frames, double time_step, c
 }
 
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording) {
-  return predict(cable, markers, recording, held_ends(markers, recording));
+  return predict(cable, markers, recording, held_ends(markers, recording), false);
 }
 
-Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends) {
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends,
+                   bool smooth_start) {
   SceneDesc scene = cable;
   scene.cables.front().attachments = clamps(markers);
   const FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
-  start_along(markers, recording, frames.at(0), scene);
+  start_along(markers, recording, frames.at(0), smooth_start, scene);
   World world(scene, frames.at(0));
 
   Prediction prediction = simulate(world, frames, scene.time_step, recording.times,

@@ -40,8 +40,10 @@ Prediction simulate(World& world, const FrameSource& frames, double time_step, c
 /// allows. Throws SceneError where the cable cannot be.
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording);
 
-/// The same with ends that are held otherwise than the recording says, in roll for instance.
-Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends);
+/// The same with ends that are held otherwise than the recording says, in roll for instance. `smooth_start`: along a smooth curve
+/// through the markers in any case.
+Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends,
+                   bool smooth_start);
 
 /// What holds the cable of a recording, as `predict` takes it.
 HeldEnds held_ends(const Markers& markers, const Recording& recording);

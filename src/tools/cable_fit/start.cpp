@@ -63,15 +63,16 @@ std::vector<Vector3> marker_positions(const SimulatedCable& cable, const Markers
   return positions;
 }
 
-void start_along(const Markers& markers, const Recording& recording, const BoundaryInputs& inputs, SceneDesc& scene) {
+void start_along(const Markers& markers, const Recording& recording, const BoundaryInputs& inputs, bool smooth,
+                 SceneDesc& scene) {
   InitialShapeDesc& initial = scene.cables.front().initial;
   initial.type = InitialShapeDesc::Type::points;
   initial.points = recording.markers.front();
   initial.velocities = initial_velocities(recording);
+  std::vector<Vector3> points = initial.points;
+  const std::vector<Vector3> velocities = initial.velocities;
+  if (smooth || !markers.offsets.empty()) start_smoothly(points, velocities, initial);
   if (!markers.offsets.empty()) {
-    std::vector<Vector3> points = initial.points;
-    const std::vector<Vector3> velocities = initial.velocities;
-    start_smoothly(points, velocities, initial);
     const World along_markers(with_allowed_length(scene), inputs);
     const std::vector<Quaternion> orientations = segment_orientations(along_markers.cables().front().state);
     for (std::size_t i = 0; i < points.size(); ++i) points[i] -= offset(markers, orientations, i);

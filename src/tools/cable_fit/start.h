@@ -28,7 +28,7 @@ void allow_length(CableDesc& cable);
 
 /// Sets `initial` of the scene's cable by the first two rows of a recording: along the markers; those with offsets tell the
 /// centre line beside them, by the material's orientation in a cable that starts along them. Brings the length within what a
-/// scene allows of such a start. `inputs`: of the scene's frames at the start.
-void start_along(const Markers& markers, const Recording& recording, const BoundaryInputs& inputs, SceneDesc& scene);
+/// scene allows of such a start. `inputs`: of the scene's frames at the start; `smooth`: between markers without offsets, too.
+void start_along(const Markers& markers, const Recording& recording, const BoundaryInputs& inputs, bool smooth, SceneDesc& scene);
 
 }  // namespace verlet_cable::cable_fit
