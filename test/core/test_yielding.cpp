@@ -287,11 +287,11 @@ TEST(YieldingRod, OnlyLosesEnergy) {
   }
 }
 
-/// A wire that is laid round a mandrel by its clamped end and let go has the radius of its springback.
-TEST(YieldingWire, BentRoundAMandrelHasTheRadiusOfItsSpringback) {
-  constexpr double radius = 0.1, wire_radius = 0.001, way = radius + wire_radius, length = 0.3, yield_curvature = 4,
-                   hardening = 0.05;
-  constexpr int count = 30;
+constexpr double mandrel_radius = 0.1, mandrel_yield_curvature = 4, mandrel_hardening = 0.05;
+
+/// A straight wire that begins on a mandrel about z, in a vice, and that pliers hold at its end.
+SceneDesc wire_on_a_mandrel(int count, double length, double wire_radius) {
+  const double way = mandrel_radius + wire_radius;
   SceneDesc scene = scenes::one_cable(count, length);
   scene.gravity.acceleration.setZero();
   MaterialDesc& material = scene.materials[0].material;
@@ -299,26 +299,40 @@ TEST(YieldingWire, BentRoundAMandrelHasTheRadiusOfItsSpringback) {
   material.radius = wire_radius;
   material.bending_stiffness = 0.05;
   material.torsional_stiffness = 0.04;
-  material.bending_damping = 1e-4;
   material.drag = 0.005;
-  material.yield_curvature = yield_curvature;
-  material.hardening = hardening;
+  material.yield_curvature = mandrel_yield_curvature;
+  material.hardening = mandrel_hardening;
   ObstacleDesc mandrel;
   mandrel.name = "mandrel";
   mandrel.type = ShapeType::cylinder;
-  mandrel.radius = radius;
-  mandrel.length = 0.2;
+  mandrel.radius = mandrel_radius;
+  mandrel.length = 0.3;
   scene.obstacles = {mandrel};
   CableDesc& cable = scene.cables[0];
   cable.initial.type = InitialShapeDesc::Type::straight;
   cable.initial.from = {0, way, 0};
   cable.initial.to = {1, way, 0};
   cable.attachments = {scenes::attachment("vice", At::start, {0, way, 0}, "", AttachmentType::clamp),
-                       scenes::attachment("pliers", At::end, {0, 0, 0}, "hand", AttachmentType::clamp)};
+                       scenes::attachment("pliers", At::end, {0, 0, 0}, "hand")};
   cable.attachments[1].initial_pose = InitialPose{length, way, 0, 0, 0, 0};
+  return scene;
+}
+
+/// [1/m] What a wire keeps that lay on the mandrel.
+double kept_of_mandrel(double way) {
+  return (1 - mandrel_hardening) * (1 / way - mandrel_yield_curvature);
+}
+
+/// A wire that is laid round a mandrel by its clamped end and let go has the radius of its springback.
+TEST(YieldingWire, BentRoundAMandrelHasTheRadiusOfItsSpringback) {
+  constexpr double wire_radius = 0.001, way = mandrel_radius + wire_radius, length = 0.3;
+  constexpr int count = 30;
+  SceneDesc scene = wire_on_a_mandrel(count, length, wire_radius);
+  scene.materials[0].material.bending_damping = 1e-4;
+  scene.cables[0].attachments[1].type = AttachmentType::clamp;
   World world(scene, initial_frames(scene));
   BoundaryInputs inputs(2);
-  const double kept = (1 - hardening) * (1 / way - yield_curvature);
+  const double kept = kept_of_mandrel(way);
   bool touched = false;
   const auto bend_to = [&](double from, double to) {
     for (int i = 0; i <= 4000; ++i) {
@@ -343,35 +357,12 @@ TEST(YieldingWire, BentRoundAMandrelHasTheRadiusOfItsSpringback) {
 /// What a wire keeps of the curvature of a mandrel round which it has been drawn by its end, over what a wire of infinitely many
 /// segments keeps. Its end goes along the involute, a little short of it.
 double kept_of_winding(int count) {
-  constexpr double radius = 0.1, wire_radius = 2e-4, way = radius + wire_radius, length = 0.6, yield_curvature = 4,
-                   hardening = 0.05, wound = 3.6, slack = 0.002;
+  constexpr double wire_radius = 2e-4, way = mandrel_radius + wire_radius, length = 0.6, wound = 3.6, slack = 0.002;
   constexpr int steps = 4000;
-  SceneDesc scene = scenes::one_cable(count, length);
-  scene.gravity.acceleration.setZero();
+  SceneDesc scene = wire_on_a_mandrel(count, length, wire_radius);
   scene.time_step = 0.002;
-  MaterialDesc& material = scene.materials[0].material;
-  material.linear_density = 0.03;
-  material.radius = wire_radius;
-  material.bending_stiffness = 0.05;
-  material.torsional_stiffness = 0.04;
-  material.bending_damping = 1e-6;
-  material.drag = 0.005;
-  material.friction = 0;
-  material.yield_curvature = yield_curvature;
-  material.hardening = hardening;
-  ObstacleDesc mandrel;
-  mandrel.name = "mandrel";
-  mandrel.type = ShapeType::cylinder;
-  mandrel.radius = radius;
-  mandrel.length = 0.3;
-  scene.obstacles = {mandrel};
-  CableDesc& cable = scene.cables[0];
-  cable.initial.type = InitialShapeDesc::Type::straight;
-  cable.initial.from = {0, way, 0};
-  cable.initial.to = {1, way, 0};
-  cable.attachments = {scenes::attachment("vice", At::start, {0, way, 0}, "", AttachmentType::clamp),
-                       scenes::attachment("pliers", At::end, {0, 0, 0}, "hand")};
-  cable.attachments[1].initial_pose = InitialPose{length, way, 0, 0, 0, 0};
+  scene.materials[0].material.bending_damping = 1e-6;
+  scene.materials[0].material.friction = 0;
   World world(scene, initial_frames(scene));
   BoundaryInputs inputs = initial_frames(scene);
   double before = 0;
@@ -393,7 +384,7 @@ double kept_of_winding(int count) {
     sum += plastic[i - 1];
     ++nodes;
   }
-  return sum / nodes / ((1 - hardening) * (1 / way - yield_curvature));
+  return sum / nodes / kept_of_mandrel(way);
 }
 
 /// While the place where a wire comes to lie on a mandrel passes along a segment, the node behind it is bent further than the
