@@ -154,6 +154,9 @@ def test_pose_is_kept(front):
     other = Camera()
     other.pose = pose
     np.testing.assert_allclose(other.pose, pose)
+    for copied in (other.pose, other.matrix):
+        with pytest.raises(ValueError, match='read-only'):
+            copied[0] = 3
     with pytest.raises(ValueError, match='pose: '):
         other.pose = [0, 0, 0, 0, 0, 0, 0]
 
@@ -200,8 +203,8 @@ def test_wrong_arguments_are_named(arguments, lines):
 
 
 @pytest.mark.parametrize('arguments, text', [
-    ({'images': 'depth'}, "images: 'depth'; allowed: some of depth, rgb, mask, points, truth"),
-    ({'images': ['deep']}, "images: ['deep']; allowed: some of"),
+    ({'images': 'depth'}, "images: 'depth'; allowed: a list with some of depth, rgb, mask, points, truth"),
+    ({'images': ['deep']}, "images: ['deep']; allowed: a list with some of"),
     ({'looks': {'hos': {'color': [1, 0, 0]}}}, 'looks: "hos"; allowed: the names of what is there: hose'),
     ({'looks': {'hose': {'colour': [1, 0, 0]}}}, "looks['hose']: 'colour'; allowed: the keys color, "),
     ({'looks': {'hose': {'color': [1, 0, 2]}}}, "looks['hose'].color: [1, 0, 2]; allowed: red, green, blue: three numbers from 0 to 1"),

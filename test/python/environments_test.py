@@ -2,6 +2,7 @@
 import copy
 import inspect
 import os
+import pickle
 import subprocess
 import sys
 import textwrap
@@ -565,10 +566,13 @@ def test_what_is_returned_is_the_callers_to_change():
 def test_a_copy_goes_on_by_itself(environment):
     environment.reset(seed=1)
     environment.step(numpy.ones(3))
-    other = copy.deepcopy(environment)
+    others = [copy.deepcopy(environment), pickle.loads(pickle.dumps(environment))]
     for _ in range(10):
-        assert same(environment.step(numpy.full(3, -0.5)), other.step(numpy.full(3, -0.5)))
-    other.close()
+        expected = environment.step(numpy.full(3, -0.5))
+        for other in others:
+            assert same(expected, other.step(numpy.full(3, -0.5)))
+    for other in others:
+        other.close()
     assert same(environment.reset()[0].shape, environment.observation_space.shape)
 
 

@@ -160,6 +160,19 @@ def test_a_batch_names_the_world(hang):
         batch.step()
 
 
+def test_a_batch_names_the_worlds_that_a_place_does_not_suit(hang):
+    batch = Batch(Scene.from_dict(unplaced(hang)), 3)
+    poses = numpy.tile([0.6, 0, 0, *IDENTITY], (3, 1))
+    batch.set_frames('hand', poses)
+    others = numpy.tile([0, 0, 0, *IDENTITY], (3, 1))
+    others[1:, 0] = 5, 7
+    with pytest.raises(ValueError) as error:
+        batch.set_frames('other_hand', others)
+    lines = str(error.value).splitlines()
+    assert [line[:9] for line in lines] == ['world 1: ', 'world 2: ']
+    assert all('1 m of cable between "left" and "right"' in line for line in lines)
+
+
 def test_a_place_that_a_cable_does_not_reach_is_refused_and_changes_nothing(hang):
     world = world_of(unplaced(hang))
     world.set_frame('hand', [0.6, 0, 0], IDENTITY)

@@ -63,7 +63,8 @@ void add_report_methods(py::module_& module, WorldMethods& methods) {
       "events", [event_type](PythonWorld& self) { return take_events(self.events(), event_type); },
       "List of Event(time, type, cable, attachment, node, other, message) since the last call, in the order of their times, with "
       "the types of cable_sim. At once: 'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED' "
-      "(at most once a second for each frame), 'LOAD_ENDED' (attachment: the load) and 'not_fitted' (the initial shape). When "
+      "(at most once a second for each frame), 'LOAD_ENDED' (attachment: the load), 'ENERGY' (once until it stops) and "
+      "'not_fitted' (the initial shape). When "
       "they begin, and with '_end' when they were not there for 0.1 s: 'overstretched', 'inside_obstacle' (other: the obstacle), "
       "'not_settled', 'degraded', 'FAULT', 'frame_too_fast' and 'frame_out_of_range' (other: the frame); the time of an end is "
       "that of the last step they were there. After the first 1000, one event of type 'more' states how many were left out. A "

@@ -18,6 +18,8 @@ namespace {
 
 /// Worlds that a thread steps together: enough for the widest lanes, and few enough to stay in its cache.
 constexpr std::size_t share = 16;
+/// Lines of an exception.
+constexpr std::size_t most_errors = 100;
 
 /// False where the world has no such part.
 bool try_copy(const World& world, const Part& part, double* to) {
@@ -213,10 +215,16 @@ void Batch::set_frame(const std::string& name, const std::vector<Pose>& poses) {
   }
   std::vector<DrivenWorld> changed = worlds_;
   std::vector<char> begun(changed.size(), 0);
-  for (std::size_t i = 0; i < changed.size(); ++i) {
-    begun[i] = changed[i].set_frame(frames[i], &poses[i * steps], steps) ? 1 : 0;
-    if (begun[i] != 0) changed[i].world().step_one_by_one(true);
+  std::vector<std::string> errors;
+  for (std::size_t i = 0; i < changed.size() && errors.size() < most_errors; ++i) {
+    try {
+      begun[i] = changed[i].set_frame(frames[i], &poses[i * steps], steps) ? 1 : 0;
+      if (begun[i] != 0) changed[i].world().step_one_by_one(true);
+    } catch (const SceneError& error) {
+      for (const std::string& line : error.errors()) errors.push_back("world " + std::to_string(i) + ": " + line);
+    }
   }
+  if (!errors.empty()) throw SceneError(std::move(errors));
   replace(std::move(changed), begun);
 }
 

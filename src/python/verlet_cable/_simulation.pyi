@@ -12,7 +12,8 @@ _Motion = Union[None, _Path, Mapping[str, tuple[ArrayLike, ArrayLike]]]
 _Status = Literal['ok', 'jumped', 'overstretched', 'inside_obstacle', 'not_settled', 'degraded', 'fault']
 
 _EventType = Literal[
-    'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED', 'LOAD_ENDED', 'not_fitted',
+    'CUT', 'BROKE', 'PINNED', 'UNPINNED', 'JOINED', 'LIMIT', 'CAUGHT', 'RELEASED', 'JUMPED', 'LOAD_ENDED', 'ENERGY',
+    'not_fitted',
     'overstretched', 'overstretched_end', 'inside_obstacle', 'inside_obstacle_end', 'not_settled', 'not_settled_end',
     'degraded', 'degraded_end', 'FAULT', 'FAULT_end', 'frame_too_fast', 'frame_too_fast_end',
     'frame_out_of_range', 'frame_out_of_range_end', 'more'

@@ -96,7 +96,7 @@ class Camera:
     def matrix(self) -> NDArray[np.float64]:
         """(3, 3) The intrinsic matrix [pixels], K of sensor_msgs/CameraInfo."""
         fx, fy, cx, cy = self._camera.intrinsics
-        return np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+        return _read_only([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
 
     @property
     def distortion(self) -> Tuple[float, ...]:
@@ -105,8 +105,8 @@ class Camera:
 
     @property
     def pose(self) -> NDArray[np.float64]:
-        """(7,) x, y, z, qx, qy, qz, qw of the optical frame in the fixed frame; may be set."""
-        return np.array(self._pose)
+        """(7,) x, y, z, qx, qy, qz, qw of the optical frame in the fixed frame; may be set, as a whole."""
+        return _read_only(self._pose)
 
     @pose.setter
     def pose(self, pose: ArrayLike) -> None:
@@ -172,6 +172,13 @@ def _again(arguments: Dict[str, Any], pose: Tuple[float, ...]) -> Camera:
     camera = Camera(**arguments)
     camera._pose = pose
     return camera
+
+
+def _read_only(numbers: ArrayLike) -> NDArray[np.float64]:
+    """A copy: what is written into it would change nothing."""
+    array = np.array(numbers, dtype=np.float64)
+    array.setflags(write=False)
+    return array
 
 
 def _wrong(name: str, value: Any, allowed: str) -> str:
@@ -258,7 +265,7 @@ def _preset(name: Optional[str], checks: _Checks) -> Tuple[Dict[str, Any], Dict[
 
 
 def _checked_images(images: Sequence[str]) -> List[str]:
-    allowed = 'some of ' + ', '.join(IMAGES)
+    allowed = 'a list with some of ' + ', '.join(IMAGES)
     if isinstance(images, str) or not all(name in IMAGES for name in images) or not images:
         raise ValueError(_wrong('images', images, allowed))
     return list(dict.fromkeys(images))

@@ -43,6 +43,13 @@ class Task:
     def __deepcopy__(self, memo):
         return self
 
+    def __getstate__(self):
+        return {name: value for name, value in vars(self).items() if name != '_lock'}
+
+    def __setstate__(self, state):
+        vars(self).update(state)
+        self._lock = threading.Lock()
+
     def copy_starts(self):
         """Worlds to begin with."""
         with self._lock:
