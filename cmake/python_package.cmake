@@ -8,5 +8,3 @@ set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/bin)  # programs are named like the directories of their parts
 
 include(cmake/without_ros.cmake)
-# Several files at once take half of the compiler's time.
-set_property(TARGET verlet_cable_core PROPERTY UNITY_BUILD ON)
