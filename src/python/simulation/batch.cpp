@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/world/parallel_for.h"
+#include "simulation/batch_materials.h"
 #include "simulation/batch_scenes.h"
 #include "simulation/memory_check.h"
 #include "simulation/quantity.h"
@@ -18,8 +19,6 @@ namespace {
 
 /// Worlds that a thread steps together: enough for the widest lanes, and few enough to stay in its cache.
 constexpr std::size_t share = 16;
-/// Lines of an exception.
-constexpr std::size_t most_errors = 100;
 
 /// False where the world has no such part.
 bool try_copy(const World& world, const Part& part, double* to) {

@@ -12,8 +12,6 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t most_errors = 100;
-
 void change(const Field<MaterialDesc>& field, MaterialDesc& material, const BendingStiffness& value) {
   material.*field.member = value.front();
 }

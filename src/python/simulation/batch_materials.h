@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <string>
 #include <vector>
@@ -7,6 +8,9 @@
 #include "simulation/driven_world.h"
 
 namespace verlet_cable {
+
+/// Lines of an exception about the worlds of a batch: after so many no further world is looked at.
+constexpr std::size_t most_errors = 100;
 
 /// A number of a material, for each world.
 struct MaterialChange {
