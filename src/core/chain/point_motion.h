@@ -69,4 +69,13 @@ void share_force(const CablePoint& point, const Vector3& force, const Add& add) 
   if (point.before != 0) add(i - 1, Vector3(-before));
 }
 
+/// Adds a force at a point to the nodes that carry it.
+inline void add_force(const CablePoint& point, const Vector3& force, VectorArray& nodes) {
+  share_force(point, force, [&](int i, const Vector3& part) {
+    nodes.x[i] += part.x();
+    nodes.y[i] += part.y();
+    nodes.z[i] += part.z();
+  });
+}
+
 }  // namespace verlet_cable

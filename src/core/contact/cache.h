@@ -48,6 +48,13 @@ inline const CachedContact* find_cached(const ContactCache& cache, std::uint64_t
   return found != cache.end() && keys(*found) == sought ? &*found : nullptr;
 }
 
+/// Whether what touches bore a force in the substep before. Without that it goes where the cable's own forces take it, which its
+/// velocity does not tell.
+inline bool bore(const ContactCache& cache, std::uint64_t key, std::uint64_t other_key) {
+  const CachedContact* const last = find_cached(cache, key, other_key);
+  return last != nullptr && last->mode != Touch::Mode::open;
+}
+
 /// Keys of touches: cables and obstacles by their ids, which no edit changes.
 constexpr std::uint64_t body_key = std::uint64_t{1} << 62;  // bodies come after obstacles,
 constexpr std::uint64_t pair_key = std::uint64_t{1} << 63;  // pairs after those

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "chain/inner_products.h"
 #include "chain/point_motion.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -28,70 +29,10 @@ constexpr int following_iterations = 20;
 /// A correction may turn the forces along it round to this part of what they were.
 constexpr double turned_round = 0.5;
 constexpr int maximum_shortenings = 8;
-/// Conjugate gradients end when the energy of what is missing is less than this, relative to that of the whole correction and
-/// of the substep's largest.
-constexpr double coupling_tolerance = 1e-2;
-constexpr double coupling_precision = 1e-10;
-/// Or when it is this part of what moves a segment by no more than is tolerated.
+/// Energy is negligible where it is this part of what moves a segment by no more than is tolerated.
 constexpr double negligible_part = 0.1;
-constexpr int maximum_coupling_iterations = 60;
-/// Friction has followed the normal forces when displacements at the contacts change by less than this, relatively, or by this
-/// part of what is tolerated.
-constexpr double followed = 0.1;
-constexpr double followed_part = 0.2;
 /// In radii: what is no deeper in each other than by one and moves by less passes through nothing.
 constexpr double short_way = 0.5;
-constexpr int maximum_followings = 20;
-
-/// Adds a force at a point to the nodes that carry it.
-inline void share(const Vector3& force, const CablePoint& point, VectorArray& nodes) {
-  share_force(point, force, [&](int i, const Vector3& part) {
-    nodes.x[i] += part.x();
-    nodes.y[i] += part.y();
-    nodes.z[i] += part.z();
-  });
-}
-
-template <typename Operation>
-void each_component(const Operation& operation) {
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) operation(component);
-}
-
-double dot(const std::vector<double>& a, const std::vector<double>& b, int count) {
-  double sum = 0;
-  for (int i = 0; i < count; ++i) sum += a[i] * b[i];
-  return sum;
-}
-
-double dot(const VectorArray& a, const VectorArray& b, int count) {
-  double sum = 0;
-  each_component([&](auto component) {
-    for (int i = 0; i < count; ++i) sum += (a.*component)[i] * (b.*component)[i];
-  });
-  return sum;
-}
-
-/// place += step * direction
-void advance(double step, const std::vector<double>& direction, std::vector<double>& place) {
-  const double* p = direction.data();
-  double* x = place.data();
-  const std::size_t count = place.size();
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) x[i] += step * p[i];
-}
-
-/// The same; then direction = found + ratio * direction
-void turn(double step, double ratio, const std::vector<double>& found, std::vector<double>& direction,
-          std::vector<double>& place) {
-  const double* z = found.data();
-  double *p = direction.data(), *x = place.data();
-  const std::size_t count = place.size();
-#pragma GCC ivdep
-  for (std::size_t i = 0; i < count; ++i) {
-    x[i] += step * p[i];
-    p[i] = z[i] + ratio * p[i];
-  }
-}
 
 int nodes(const Participant& p) {
   return p.state->nodes();
@@ -134,23 +75,22 @@ inline Vector3 ContactSolver::displacement_of(Touch& touch, std::vector<Particip
 bool ContactSolver::solve(std::vector<Participant>& participants, std::vector<Touch>& touches, BodySystem* bodies,
                           double most_work) {
   bodies_ = bodies;
-  most_work_ = most_work;
+  work_ = {};
+  work_.most = most_work;
   begin(participants);
   return iterate(participants, touches);
 }
 
 void ContactSolver::begin(std::vector<Participant>& participants) {
-  if (work_.size() < participants.size()) work_.resize(participants.size());
-  size_ = spent_ = 0;
+  coupled_.begin(participants.size());
   for (std::size_t k = 0; k < participants.size(); ++k) {
     Participant& p = participants[k];
     if (static_cast<int>(index_.size()) <= p.cable) index_.resize(p.cable + 1);
     index_[p.cable] = static_cast<int>(k);
     *p.result = {};
     p.stepper->begin(p.substep, *p.state, *p.result);
-    size_ += work_of_visiting(p);
+    work_.size += work_of_visiting(p);
   }
-  largest_energy_ = 0;
 }
 
 void ContactSolver::finish(std::vector<Participant>& participants, std::vector<Touch>& touches) const {
@@ -189,20 +129,21 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
   const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
   const bool passes_momentum = std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0; });
   const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
-  negligible_energy_ = tolerated_ = infinity;
+  double tolerated = infinity;          // [m] of a node
+  double negligible_energy = infinity;  // [J] moves no node by more than that
   for (const Participant& p : participants) {
     const double moved = tolerance * p.state->rest_lengths.front();
-    tolerated_ = std::min(tolerated_, moved);
+    tolerated = std::min(tolerated, moved);
     const double mass = p.state->rest_lengths.front() * CableMaterials(p.substep.model, *p.state)[0].linear_density;
-    negligible_energy_ = std::min(negligible_energy_, negligible_part * mass * moved * moved / (h * h));
+    negligible_energy = std::min(negligible_energy, negligible_part * mass * moved * moved / (h * h));
   }
   double told = 0;      // [J] if that much is missing, beside a part of the work
   double expected = 0;  // [J] to be missing, after the last iterate
   for (const Participant& p : participants) told += p.stepper->told_energy(p.substep, *p.state);
   double last = 0;
   bool stale = true;
-  for (int i = 0; i < contact_iterations && spent_ < most_work_; ++i) {
-    spend(budget::heavy, touches.size());
+  for (int i = 0; i < contact_iterations && work_.is_left(); ++i) {
+    work_.spend(budget::heavy, touches.size());
     if (i == following_iterations) hold_bounds(touches);
     const bool changed = i == 0 ? press(participants, touches) : shorten(participants, touches);
     const double missing = missing_energy(participants), work = work_from_outside(participants, touches);
@@ -211,10 +152,10 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
                           });
     if (factored) factor(participants, touches);
     for (Participant& p : participants) p.stepper->solve_linear();
-    if (couplings_.empty())
-      follow_friction(participants, touches);
+    if (coupled_.empty())
+      friction_.solve(touches, index_, tolerated, participants);
     else
-      couple(participants);
+      coupled_.solve(negligible_energy, work_, participants);
     if (bodies_ != nullptr) bodies_->solve(participants, factored);
     work_along_ = work_along(participants);
     double largest = 0;
@@ -236,8 +177,8 @@ bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });
     const double left = std::clamp(ratio, fastest_convergence, 1.0);
-    const double tolerated = untold_part * (told + accountable_part * work) + negligible_energy_;
-    const bool is_accounted = left * larger(missing, expected) <= tolerated;
+    const double untold = untold_part * (told + accountable_part * work) + negligible_energy;
+    const bool is_accounted = left * larger(missing, expected) <= untold;
     expected = left * missing;
     if (largest * left < enough && is_accounted && consistent) {
       for (Participant& p : participants) p.result->converged = true;
@@ -328,15 +269,15 @@ bool ContactSolver::press(std::vector<Participant>& participants, std::vector<To
     touch.followed.setZero();
     if (touch.mode == Touch::Mode::open) continue;
     if (touch.body >= 0) bodies_->contacts().add_load(touch);
-    share(touch.force, point, stepper.system().load);
-    if (other_stepper != nullptr) share(-touch.force, other, other_stepper->system().load);
+    add_force(point, touch.force, stepper.system().load);
+    if (other_stepper != nullptr) add_force(other, -touch.force, other_stepper->system().load);
   }
   return changed;
 }
 
 void ContactSolver::factor(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   for (Participant& p : participants) p.stepper->assemble(p.substep.part());
-  couplings_.clear();
+  coupled_.clear();
   if (bodies_ != nullptr) bodies_->clear_cable_contacts();
   for (const Touch& touch : touches) {
     if (touch.mode == Touch::Mode::open) continue;
@@ -345,233 +286,9 @@ void ContactSolver::factor(std::vector<Participant>& participants, std::vector<T
     if (touch.body >= 0) bodies_->add_cable_contact(index_[touch.point.cable], touch);
     if (!joins_cables(touch)) continue;
     at(participants, touch.other).stepper->system().add_stiffness(touch.other, stiffness);
-    couplings_.push_back({side_at(touch.point), side_at(touch.other), stiffness});
+    coupled_.add(touch, index_[touch.point.cable], index_[touch.other.cable], stiffness);
   }
   for (Participant& p : participants) p.stepper->factor();
-}
-
-/// The matrix has no part of the friction that follows the normal force of what slides, since that is not symmetric. Improves the
-/// solutions until it follows all the same: along a capstan it takes as many times as the cable's tension has to be handed on.
-void ContactSolver::follow_friction(std::vector<Participant>& participants, std::vector<Touch>& touches) {
-  slips_.clear();
-  for (std::size_t k = 0; k < participants.size(); ++k) work_[k].slips = false;
-  for (Touch& touch : touches) {
-    if (touch.mode == Touch::Mode::open || !(touch.friction > 0)) continue;
-    Slip slip;
-    slip.touch = &touch;
-    slip.participant = index_[touch.point.cable];
-    slip.normal = touch.normal;
-    slip.friction = following_friction(touch);
-    if (slip.friction.isZero(0)) continue;
-    slip.normal_force = touch.normal_force;
-    slip.stiffness = touch.rate * touch.normal_stiffness;
-    slips_.push_back(slip);
-    work_[slip.participant].slips = true;
-  }
-  if (slips_.empty()) return;
-  for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].slips) work_[k].kept_load = participants[k].stepper->system().load;
-  double last = follow_slips(participants);
-  bool follows = true;
-  for (int i = 0; i < maximum_followings && follows && last > 0; ++i) {
-    solve_slipping(participants);
-    const double way = follow_slips(participants);
-    if (!(way > 0)) break;
-    follows = way < last;
-    last = way;
-  }
-  for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].slips) std::swap(participants[k].stepper->system().load, work_[k].kept_load);
-  if (follows) return;
-  // Where it gets away from them, without.
-  solve_slipping(participants);
-  for (const Slip& slip : slips_) slip.touch->followed.setZero();
-}
-
-/// Adds to the loads what friction changes with the normal forces in the present solution. How far that has come since the last
-/// time [m], 0 if no distance.
-double ContactSolver::follow_slips(std::vector<Participant>& participants) {
-  double way = 0, largest = 0;
-  for (Slip& slip : slips_) {
-    CableStepper& stepper = *participants[slip.participant].stepper;
-    const Vector3 displacement = at_point(slip.touch->point, stepper.correction());
-    way = std::max(way, (displacement - slip.displacement).squaredNorm());
-    largest = std::max(largest, displacement.squaredNorm());
-    slip.displacement = displacement;
-    const double change = std::max(-slip.stiffness * slip.normal.dot(displacement), -slip.normal_force);
-    share((change - slip.change) * slip.friction, slip.touch->point, stepper.system().load);
-    slip.change = change;
-  }
-  way = std::sqrt(way);
-  return way > std::max(followed * std::sqrt(largest), followed_part * tolerated_) ? way : 0;
-}
-
-void ContactSolver::solve_slipping(std::vector<Participant>& participants) {
-  for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].slips) participants[k].stepper->solve_linear();
-  for (const Slip& slip : slips_) slip.touch->followed = slip.change * slip.friction;
-}
-
-/// Improves the solutions that the cables have found alone until they heed each other. The matrix differs from the cables' own by
-/// what joins the two sides of contacts, so that all residuals are forces on their points.
-void ContactSolver::couple(std::vector<Participant>& participants) {
-  double whole = 0;
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    CableStepper& stepper = *participants[k].stepper;
-    whole += std::abs(dot(stepper.system().load, stepper.correction(), nodes(participants[k])));
-    work_[k].coupled = false;
-  }
-  const auto displacement_of = [&](const Side& side) {
-    return at_point(side.point, participants[side.participant].stepper->correction());
-  };
-  for (Coupling& c : couplings_) {
-    c.first.residual = c.matrix * displacement_of(c.second);
-    c.second.residual = c.matrix * displacement_of(c.first);
-    work_[c.first.participant].coupled = work_[c.second.participant].coupled = true;
-  }
-  begin_solutions(participants);
-  exchange_loads(participants);
-  largest_energy_ = std::max(largest_energy_, whole);
-  const double enough = std::max({coupling_tolerance * whole, coupling_precision * largest_energy_, negligible_energy_});
-
-  double energy = 0, step = 0;
-  for (int i = 0; i < maximum_coupling_iterations; ++i) {
-    const double next_energy = precondition(participants);
-    spend(budget::coupling, couplings_.size());
-    if (!(next_energy > enough) || spent_ > most_work_) break;
-    const double ratio = i == 0 ? 0 : next_energy / energy;
-    energy = next_energy;
-    turn_directions(step, ratio, participants);
-    step = 0;
-    double curvature = 0;
-    for (Coupling& c : couplings_) {
-      for (Side* side : {&c.first, &c.second}) {
-        side->direction = side->displacement + ratio * side->direction;
-        side->image = side->residual + ratio * side->image;
-      }
-      curvature += c.first.direction.dot(c.first.image) + c.second.direction.dot(c.second.image) -
-                   2 * c.first.direction.dot(c.matrix * c.second.direction);
-    }
-    if (!(curvature > 0)) break;
-    step = energy / curvature;
-    for (Coupling& c : couplings_) {
-      c.first.residual -= step * (c.first.image - c.matrix * c.second.direction);
-      c.second.residual -= step * (c.second.image - c.matrix * c.first.direction);
-      for (Side* side : {&c.first, &c.second}) side->correction += step * side->image;
-    }
-  }
-  clear_loads(participants);
-  exchange_loads(participants);
-  put_solutions(step, participants);
-  solve_whole_rods(participants);
-}
-
-/// Solves the cables' own systems for the residuals; their energy.
-double ContactSolver::precondition(std::vector<Participant>& participants) {
-  clear_loads(participants);
-  load_residuals(participants);
-  for (std::size_t k = 0; k < participants.size(); ++k)
-    if (work_[k].coupled) participants[k].stepper->solve_linear();
-  double energy = 0;
-  for (Coupling& c : couplings_)
-    for (Side* side : {&c.first, &c.second}) {
-      side->displacement = at_point(side->point, participants[side->participant].stepper->correction());
-      energy += side->residual.dot(side->displacement);
-    }
-  return energy;
-}
-
-/// Takes the last step along the directions and turns them: the new one is what the cables have just found and `ratio` times the
-/// last one.
-void ContactSolver::turn_directions(double last_step, double ratio, const std::vector<Participant>& participants) {
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled || participants[k].stepper->is_whole_rod()) continue;
-    Work& work = work_[k];
-    const CableStepper& stepper = *participants[k].stepper;
-    each_component([&](auto component) {
-      turn(last_step, ratio, stepper.correction().*component, work.direction.*component, work.correction.*component);
-    });
-    turn(last_step, ratio, stepper.multiplier_correction(), work.multiplier_direction, work.multiplier);
-  }
-}
-
-void ContactSolver::load_residuals(std::vector<Participant>& participants) const {
-  for (const Coupling& c : couplings_)
-    for (const Side* side : {&c.first, &c.second})
-      share(side->residual, side->point, participants[side->participant].stepper->system().load);
-}
-
-/// The solutions that the cables have found alone are where improvement begins.
-void ContactSolver::begin_solutions(const std::vector<Participant>& participants) {
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled) continue;
-    Work& work = work_[k];
-    CableStepper& stepper = *participants[k].stepper;
-    const std::size_t count = stepper.system().load.x.size();
-    if (work.load.x.size() != count) {
-      work.load.assign(count, 0.0);
-      work.gap.assign(stepper.system().gap.size(), 0.0);
-    }
-    if (work.torque.size() != stepper.torque().size()) work.torque.assign(stepper.torque().size(), 0.0);
-    work.flow_load.assign(stepper.system().flow_load.size(), 0.0);
-    if (stepper.is_whole_rod()) continue;
-    work.correction = stepper.correction();
-    work.multiplier = stepper.multiplier_correction();
-    work.direction.assign(count, 0.0);
-    work.multiplier_direction.assign(work.multiplier.size(), 0.0);
-  }
-}
-
-/// Coupled cables are loaded by residuals alone, and by their own loads again.
-void ContactSolver::exchange_loads(std::vector<Participant>& participants) {
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled) continue;
-    CableStepper& stepper = *participants[k].stepper;
-    std::swap(stepper.system().load, work_[k].load);
-    std::swap(stepper.system().gap, work_[k].gap);
-    std::swap(stepper.torque(), work_[k].torque);
-    std::swap(stepper.system().flow_load, work_[k].flow_load);
-  }
-}
-void ContactSolver::clear_loads(std::vector<Participant>& participants) const {
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    VectorArray& load = participants[k].stepper->system().load;
-    if (work_[k].coupled) load.assign(load.x.size(), 0.0);
-  }
-}
-
-/// The improved solutions, which the cables have kept with a last step along the directions.
-void ContactSolver::put_solutions(double last_step, std::vector<Participant>& participants) {
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!work_[k].coupled || participants[k].stepper->is_whole_rod()) continue;
-    Work& work = work_[k];
-    each_component([&](auto component) { advance(last_step, work.direction.*component, work.correction.*component); });
-    advance(last_step, work.multiplier_direction, work.multiplier);
-    participants[k].stepper->set_correction(work.correction, work.multiplier);
-  }
-}
-
-/// Whole rods have more unknowns than are kept: they are solved once more, with what the contacts add to their loads.
-void ContactSolver::solve_whole_rods(std::vector<Participant>& participants) {
-  const auto is_whole_rod = [&](std::size_t k) { return work_[k].coupled && participants[k].stepper->is_whole_rod(); };
-  for (std::size_t k = 0; k < participants.size(); ++k)
-    if (is_whole_rod(k)) work_[k].kept_load = participants[k].stepper->system().load;
-  for (const Coupling& c : couplings_)
-    for (const Side* side : {&c.first, &c.second})
-      if (is_whole_rod(side->participant))
-        share(side->correction, side->point, participants[side->participant].stepper->system().load);
-  for (std::size_t k = 0; k < participants.size(); ++k) {
-    if (!is_whole_rod(k)) continue;
-    participants[k].stepper->solve_linear();
-    std::swap(participants[k].stepper->system().load, work_[k].kept_load);
-  }
-}
-
-ContactSolver::Side ContactSolver::side_at(const CablePoint& point) const {
-  Side side;
-  side.participant = index_[point.cable];
-  side.point = point;
-  return side;
 }
 
 }  // namespace verlet_cable

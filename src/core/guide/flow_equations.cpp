@@ -2,9 +2,7 @@
 #include <cmath>
 #include <utility>
 
-#include "rod/bending_memory.h"
 #include "rod/cable_stepper.h"
-#include "rod/rod_frames.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -13,50 +11,11 @@ namespace {
 
 /// A flow may change its mode so often in a substep; then it keeps it.
 constexpr int most_changes = 8;
-/// Of the length of a segment: no flow takes so much that less is left.
-constexpr double least_left = 0.02;
 /// [m/s] Against its friction nothing flows faster.
 constexpr double turned_round = 1e-9;
 
-/// Solves a small dense system with pivots from each column; `matrix` is by rows, and both are used up.
-void solve_dense(int size, std::vector<double>& matrix, std::vector<double>& vector) {
-  const auto at = [&](int row, int column) -> double& { return matrix[row * size + column]; };
-  for (int k = 0; k < size; ++k) {
-    int pivot = k;
-    for (int i = k + 1; i < size; ++i)
-      if (std::abs(at(i, k)) > std::abs(at(pivot, k))) pivot = i;
-    if (pivot != k) {
-      for (int j = k; j < size; ++j) std::swap(at(k, j), at(pivot, j));
-      std::swap(vector[k], vector[pivot]);
-    }
-    for (int i = k + 1; i < size; ++i) {
-      const double factor = at(i, k) / at(k, k);
-      for (int j = k + 1; j < size; ++j) at(i, j) -= factor * at(k, j);
-      vector[i] -= factor * vector[k];
-    }
-  }
-  for (int k = size - 1; k >= 0; --k) {
-    for (int j = k + 1; j < size; ++j) vector[k] -= at(k, j) * vector[j];
-    vector[k] /= at(k, k);
-  }
-}
-
 double mean(double a, double b, double part) {
   return a + part * (b - a);
-}
-std::array<double, 2> mean(const std::array<double, 2>& a, const std::array<double, 2>& b, double part) {
-  return {mean(a[0], b[0], part), mean(a[1], b[1], part)};
-}
-
-/// What the material at the guide's nodes has: where it comes from, there it was.
-template <class T>
-void flow_on(const Flow& flow, const std::vector<double>& rest_lengths, std::vector<T>& values) {
-  for (const int node : {flow.first, flow.last}) {
-    const int from = flow.way > 0 ? node - 1 : node + 1;
-    const double length = rest_lengths[std::min(from, node)];
-    values[node] = mean(values[node], values[from], std::min(std::abs(flow.way) / length, 1.0));
-    if (flow.first == flow.last) break;
-  }
 }
 
 /// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
@@ -362,105 +321,6 @@ Flow::Mode CableStepper::next_mode(const Substep& s, const Flow& flow, const Gui
   return flow.mode;
 }
 
-/// What unit ways do to the tensions beside all guides.
-void CableStepper::factor_flows() {
-  const int count = static_cast<int>(flows_.size());
-  std::swap(system_.load, kept_load_);
-  std::swap(system_.gap, kept_gap_);
-  std::swap(rod_.torque(), kept_torque_);
-  const bool moves_held = std::exchange(system_.moves_held, false);
-  system_.load.assign(segments_ + 2, 0.0);
-  rod_.torque().assign(segments_ + 2, 0.0);
-  for (int j = 0; j < count; ++j) {
-    system_.gap.assign(segments_ + 2, 0.0);
-    system_.gap[flows_[j].before] += flows_[j].gap[0];
-    system_.gap[flows_[j].after] += flows_[j].gap[1];
-    add_column(flows_[j], 1);
-    solve_segments();
-    for (int k = 0; k < count; ++k) {
-      double* const response = &flow_response_[3 * (j * count + k)];
-      response[0] = multiplier_correction()[flows_[k].before];
-      response[1] = multiplier_correction()[flows_[k].after];
-      response[2] = along_row(flows_[k]);
-    }
-    add_column(flows_[j], -1);
-  }
-  system_.moves_held = moves_held;
-  std::swap(system_.load, kept_load_);
-  std::swap(system_.gap, kept_gap_);
-  std::swap(rod_.torque(), kept_torque_);
-}
-
-/// The solution of the segments alone becomes that of segments and flows.
-void CableStepper::let_flow() {
-  const int count = static_cast<int>(flows_.size());
-  const std::vector<double>& multiplier = multiplier_correction();
-  for (int k = 0; k < count; ++k) {
-    const Flow& flow = flows_[k];
-    const double moves = is_stopped(flow) ? 0 : 1;
-    flow_solution_[k] = system_.flow_load[k] + flow.row[0] * multiplier[flow.before] + flow.row[1] * multiplier[flow.after] +
-                        moves * along_row(flow);
-    for (int j = 0; j < count; ++j) {
-      const double* response = &flow_response_[3 * (j * count + k)];
-      flow_matrix_[k * count + j] =
-          -flow.row[0] * response[0] - flow.row[1] * response[1] - moves * response[2] - (j == k ? flow.diagonal : 0);
-    }
-  }
-  solve_dense(count, flow_matrix_, flow_solution_);
-  flow_gap_ = system_.gap;
-  for (int k = 0; k < count; ++k) {
-    flows_[k].correction = flow_solution_[k];
-    system_.gap[flows_[k].before] += flows_[k].gap[0] * flow_solution_[k];
-    system_.gap[flows_[k].after] += flows_[k].gap[1] * flow_solution_[k];
-  }
-  flow_node_load_ = system_.load;
-  for (const Flow& flow : flows_) add_column(flow, flow.correction);
-  solve_segments();
-  std::swap(system_.load, flow_node_load_);
-  std::swap(system_.gap, flow_gap_);
-}
-
-/// Adds what a way changes of the loads on nodes.
-void CableStepper::add_column(const Flow& flow, double way) {
-  for (std::size_t i = 0; i < flow.column.size(); ++i) {
-    const int node = flow.first_node() + static_cast<int>(i);
-    if (node < 0 || node > segments_) continue;
-    set(system_.load, node, get(system_.load, node) + way * flow.column[i]);
-  }
-}
-
-/// What the nodes of the last solution do to what drives a flow [N].
-double CableStepper::along_row(const Flow& flow) const {
-  return along(flow, flow.column) - along(flow, flow.rubbing);
-}
-
-double CableStepper::along(const Flow& flow, const FlowColumn& column) const {
-  double sum = 0;
-  for (std::size_t i = 0; i < column.size(); ++i) {
-    const int node = flow.first_node() + static_cast<int>(i);
-    if (node >= 0 && node <= segments_) sum += column[i].dot(get(correction(), node));
-  }
-  return sum;
-}
-
-/// False if so much would flow that next to nothing is left.
-bool CableStepper::correct_flows(double part) {
-  bool is_left = true;
-  const std::vector<double>& multiplier = multiplier_correction();
-  for (Flow& flow : flows_) {
-    flow.way += part * flow.correction;
-    is_left =
-        is_left && flow.way < (1 - least_left) * flow.start_length[0] && -flow.way < (1 - least_left) * flow.start_length[1];
-    if (!is_resisted(flow)) continue;
-    // What of the corrections is not in the row, friction takes.
-    const auto arm = [&](int i) { return 0.5 * (length_[i] + std::sqrt(end_square_[i])); };
-    flow.resistance += part * (arm(flow.after) - flow.row[1]) * multiplier[flow.after];
-    flow.resistance -= part * (arm(flow.before) + flow.row[0]) * multiplier[flow.before];
-    flow.resistance += part * along(flow, flow.rubbing);
-  }
-  return is_left;
-}
-
 bool CableStepper::flows_are_consistent(const Substep& s) const {
   if (winch_.segment >= 0 && !winch_is_consistent(s)) return false;
   return std::all_of(flows_.begin(), flows_.end(), [&](const Flow& flow) {
@@ -479,115 +339,6 @@ Vector3 CableStepper::flow_reaction(const Substep& s, int node) const {
   Vector3 way = 0.5 * (before + after);
   for (int i = flow->first; i < flow->last; ++i) way += get(middle_, i);
   return -flow->density * (speed * speed * (after.normalized() - before.normalized()) + gain * way);
-}
-
-namespace {
-
-/// What is remembered goes with the material, by the lengths that it had.
-void carry_memory(const Flow& flow, CableState& state) {
-  const int border = 2 * flow.before + 1;
-  if (flow.first == flow.last)
-    carry_bends(border, {0.5 * flow.way, flow.way, 0.5 * flow.way}, state);
-  else
-    carry_bends(border, {0.5 * flow.way, flow.way, flow.way, flow.way, 0.5 * flow.way}, state);
-}
-
-}  // namespace
-
-void CableStepper::finish_flows(const Substep& s, CableState& state) {
-  if (!state.bending_memory.empty())
-    for (const Flow& flow : flows_) carry_memory(flow, state);
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const Flow& flow = flows_[k];
-    const double half_density = 0.5 * flow.density;
-    GuidedFlow& guided = s.boundary.flows[k];
-    double rate = s.statics || comes_to_rest(s, flow) ? 0 : end_rate(s, flow);
-    if ((flow.mode == Flow::Mode::forward && rate < 0) || (flow.mode == Flow::Mode::backward && rate > 0)) rate = 0;
-    guided.rate = rate;
-    guided.acceleration = s.statics ? 0 : (rate - flow.rate) / s.h;
-    if (s.scheme == Scheme::damped) guided.acceleration = (flow.way / s.h - flow.rate) / s.h + 0.5 * flow.acceleration;
-    if (!s.statics) guided.held_way += flow.way;
-    state.rest_lengths[flow.before] -= flow.way;
-    state.rest_lengths[flow.after] += flow.way;
-    state.masses[flow.before] -= half_density * flow.way;
-    state.masses[flow.first] -= half_density * flow.way;
-    state.masses[flow.last] += half_density * flow.way;
-    state.masses[flow.after + 1] += half_density * flow.way;
-  }
-}
-
-/// The same in the linear system of impulses, whose unknowns for flows are the changes of their rates.
-void CableStepper::begin_flow_projection(const Substep& s, const CableState& state) {
-  system_.flow_load.assign(flows_.size(), 0.0);
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    Flow& flow = flows_[k];
-    const bool moves = !comes_to_rest(s, flow);
-    const double rate = s.boundary.flows[k].rate;
-    flow.row = flow.gap = {0, 0};
-    flow.column.fill(Vector3::Zero());
-    flow.rubbing.fill(Vector3::Zero());
-    flow.diagonal = moves ? -flow.mass : -1;
-    for (const int side : {0, 1}) {
-      const int i = side == 0 ? flow.before : flow.after;
-      if (is_elastic_at(i)) continue;
-      const double length = side == 0 ? -state.rest_lengths[i] : state.rest_lengths[i];
-      system_.gap[i] += length * rate;
-      flow.gap[side] = length;
-      if (moves) flow.row[side] = length;
-    }
-  }
-}
-
-/// The frame of a segment that flows on is that of other material then, in its middle.
-void CableStepper::carry_frames_with_flows(const CableModel& model, CableState& state) const {
-  const auto twist_rate = [&](int node) {
-    if (node < 0 || node > segments_) return 0.0;
-    return material_twist(model, state, node) / joint_length(state, node);
-  };
-  for (const Flow& flow : flows_) {
-    // Where what comes to the middle is now
-    const std::array<double, 2> rates = flow.way > 0 ? std::array{twist_rate(flow.before), twist_rate(flow.last)}
-                                                     : std::array{twist_rate(flow.first), twist_rate(flow.after + 1)};
-    for (const int side : {0, 1}) {
-      const int segment = side == 0 ? flow.before : flow.after;
-      const double turn = -0.5 * flow.way * rates[side];
-      turn_segment(segment, turn, state);
-      state.joint_twist[segment] += turn;
-      state.joint_twist[segment + 1] -= turn;
-    }
-    if (!state.rest_curvature.empty()) flow_on(flow, state.rest_lengths, state.rest_curvature);
-    if (!state.rest_twist.empty()) flow_on(flow, state.rest_lengths, state.rest_twist);
-  }
-}
-
-/// In the system of impulses.
-FlowRate CableStepper::rate_of(const Substep& s, const Flow& flow) const {
-  return {flow.first,
-          flow.last,
-          target_length_[flow.before],
-          target_length_[flow.after],
-          comes_to_rest(s, flow) ? infinity : flow.mass,
-          s.boundary.flows[&flow - flows_.data()].rate};
-}
-
-/// Impulses along the segments beside a guide move what flows, too.
-void CableStepper::project_flows(const Substep& s) {
-  for (const Flow& flow : flows_)
-    if (!is_elastic_at(flow.before)) add_flow_rate(rate_of(s, flow), pivot_, off_, impulse_);
-  keep_unmoved(segments_, pivot_, impulse_);
-}
-
-void CableStepper::push_flows(const Substep& s, SubstepResult& result) {
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const Flow& flow = flows_[k];
-    if (!is_elastic_at(flow.before)) mend_flow(flow, change_of_rate(rate_of(s, flow), impulse_), s.boundary.flows[k], result);
-  }
-}
-
-/// As velocities are mended. `change`: of the rate [m/s].
-void CableStepper::mend_flow(const Flow& flow, double change, GuidedFlow& guided, SubstepResult& result) {
-  result.balance.dissipated.unresolved -= flow.mass * change * (guided.rate + 0.5 * change);
-  guided.rate += change;
 }
 
 }  // namespace verlet_cable

@@ -570,8 +570,7 @@ void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion
   for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
     set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
   if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
-  for (const PointLoad& load : motion.loads)
-    share_force(load.point, load.force, [&](int i, const Vector3& force) { set(system_.load, i, get(system_.load, i) + force); });
+  for (const PointLoad& load : motion.loads) add_force(load.point, load.force, system_.load);
   system_.moves_held = true;
   solve_linear();
   system_.moves_held = false;

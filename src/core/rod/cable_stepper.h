@@ -124,7 +124,7 @@ class CableStepper {
   void exchange_loads();
   void solve_for_motion(const Boundary& boundary, const HolderMotion& motion);
   KktSolution& solution() { return rod_.active() ? rod_.elimination().solution() : solver_.solution(); }
-  // Flows through guides: guide/flow_equations.cpp
+  // Flows through guides: guide/flow_equations.cpp, flow_solution.cpp, flow_rates.cpp, flow_ends.cpp
   void start_flows(const Substep& substep, const CableState& state);
   void predict_flows(const Substep& substep);
   void set_flow_lengths(const Substep& substep);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 namespace verlet_cable {
 
 /// Who waits for a step does not wait longer than a budget of work. It counts visits of a segment by an iteration that solves
@@ -30,5 +32,15 @@ constexpr double link_correction = 1.2;  ///< when it is
 inline double visiting_work(int segments, double guides) {
   return (1 + budget::guide * guides) * (budget::cable + segments);
 }
+
+/// The work of a solver, up to what it may take.
+struct WorkCount {
+  double size = 0;   ///< of visiting all that it solves once
+  double spent = 0;  ///< so far
+  double most = 0;
+
+  void spend(double visits, std::size_t contacts) { spent += visits * size + budget::touch * static_cast<double>(contacts); }
+  bool is_left() const { return spent < most; }
+};
 
 }  // namespace verlet_cable

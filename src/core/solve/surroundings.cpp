@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "contact/contact_set.h"
+#include "contact/obstacle_touches.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
