@@ -82,6 +82,15 @@ void find_anchors(const State& state, Obstacle& obstacle) {
   std::sort(obstacle.holders.begin(), obstacle.holders.end());
 }
 
+/// What is inside of an obstacle that goes, and the numbers of those behind it.
+template <class Found>
+void leave_out(int obstacle, std::vector<Found>& intrusions) {
+  const auto is_in_it = [&](const Found& found) { return found.obstacle == obstacle; };
+  intrusions.erase(std::remove_if(intrusions.begin(), intrusions.end(), is_in_it), intrusions.end());
+  for (Found& found : intrusions)
+    if (found.obstacle > obstacle) --found.obstacle;
+}
+
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetObstacle& set) {
@@ -110,11 +119,8 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
   for (BodyProgress& progress : state.body_progress) forget_obstacle(found->id, progress.contacts);
   state.obstacles.erase(found);
-  const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
-  findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(), names_it),
-                            findings.intrusions.end());
-  for (Intrusion& intrusion : findings.intrusions)
-    if (intrusion.obstacle > index) --intrusion.obstacle;
+  leave_out(index, findings.intrusions);
+  leave_out(index, findings.body_intrusions);
   findings.contacts.clear();
   findings.body_contacts.clear();
   return {true, "", name};
