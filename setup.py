@@ -71,7 +71,7 @@ else:
         license='BSD-3-Clause',
         python_requires='>=3.8',
         install_requires=['numpy'],
-        extras_require={'camera': ['pillow'], 'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
+        extras_require={'camera': ['pillow', 'pyyaml'], 'plot': ['matplotlib'], 'sweep': ['dask', 'distributed', 'zarr', 'pyyaml']},
         package_data={'verlet_cable': ['py.typed', '*.pyi'], 'verlet_cable.environments': ['*.pyi'], 'verlet_cable.sim': ['*.pyi']},
         ext_modules=[Extension('verlet_cable._simulation', [])],
         cmdclass={'build_ext': BuildByCMake},
@@ -79,6 +79,7 @@ else:
         entry_points={'console_scripts': [
             'cable_sim = verlet_cable.programs:cable_sim',
             'cable_fit = verlet_cable.programs:cable_fit',
+            'cable_coco = verlet_cable.coco_command:main',
             'cable_convert = verlet_cable.convert.command:main',
             'cable_sweep = verlet_cable.sweep.command:main',
         ]},

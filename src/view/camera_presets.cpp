@@ -45,9 +45,8 @@ CameraPreset kinect_v1() {
   return {
       "kinect_v1", camera(640, 480, 57, 0.8, 4), sensor,
       "noise and steepest surfaces: Nguyen, Izadi and Lovell, Modeling Kinect Sensor Noise for Improved 3D Reconstruction and "
-      "Tracking, 2012, where steps of disparity are part of the noise, to which they add 9 to 14 % here; baseline: Khoshelham "
-      "and "
-      "Elberink, Accuracy and Resolution of Kinect Depth Data, 2012; steps of disparity: Konolige and Mihelich, Technical "
+      "Tracking, 2012, where steps of disparity are part of the noise, as here; baseline: Khoshelham and Elberink, Accuracy and "
+      "Resolution of Kinect Depth Data, 2012; steps of disparity: Konolige and Mihelich, Technical "
       "Description of Kinect Calibration, 2010; range and field of view: Microsoft, Kinect for Windows Sensor Components and "
       "Specifications"};
 }

@@ -70,6 +70,17 @@ StatusEvent event_of(const World& world, const Intrusion& found) {
           "the segment that starts here is " + rounded_text(found.depth) + " m deep inside " + obstacle + " and is pushed out"};
 }
 
+StatusEvent event_of(const World& world, const BodyIntrusion& found) {
+  const std::string& obstacle = world.obstacles()[found.obstacle].name;
+  return {world.time(),
+          name_of(Status::inside_obstacle),
+          false,
+          world.bodies()[found.body].name,
+          -1,
+          obstacle,
+          "it is " + rounded_text(found.depth) + " m deep inside " + obstacle + " and is pushed out"};
+}
+
 StatusEvent event_of(const World& world, const UnaccountedEnergy& found) {
   const std::string amount = rounded_text(std::abs(found.energy)) + " J";
   return {world.time(),
@@ -80,6 +91,22 @@ StatusEvent event_of(const World& world, const UnaccountedEnergy& found) {
           "",
           found.energy > 0 ? amount + " came from nowhere in a step; use a shorter time_step, and see the ledger"
                            : amount + " got lost in a step; use a shorter time_step, and see the ledger"};
+}
+
+void write_event(const StatusEvent& event, ByteWriter& bytes) {
+  bytes(event.time);
+  bytes(event.has_ended);
+  bytes(event.node);
+  for (const std::string* text : {&event.name, &event.cable, &event.other, &event.message}) bytes.write_text(*text);
+}
+
+StatusEvent read_event(ByteReader& bytes) {
+  StatusEvent event;
+  bytes(event.time);
+  bytes(event.has_ended);
+  bytes(event.node);
+  for (std::string* text : {&event.name, &event.cable, &event.other, &event.message}) *text = bytes.read_text();
+  return event;
 }
 
 }  // namespace
@@ -104,6 +131,29 @@ const char* name_of(Status status) {
   return "";
 }
 
+StatusLog::StatusLog(ByteReader& bytes) {
+  for (std::size_t left = bytes.read_length(); left > 0; --left) {
+    std::string key = bytes.read_text();
+    Episode episode{read_event(bytes)};
+    bytes(episode.last_time);
+    bytes(episode.largest);
+    episodes_.emplace(std::move(key), std::move(episode));
+  }
+  for (std::size_t left = bytes.read_length(); left > 0; --left) told_.push_back(read_event(bytes));
+}
+
+void StatusLog::write(ByteWriter& bytes) const {
+  bytes(episodes_.size());
+  for (const auto& [key, episode] : episodes_) {
+    bytes.write_text(key);
+    write_event(episode.first, bytes);
+    bytes(episode.last_time);
+    bytes(episode.largest);
+  }
+  bytes(told_.size());
+  for (const StatusEvent& event : told_) write_event(event, bytes);
+}
+
 void StatusLog::observe_start(const World& world, std::size_t first_unsettled) {
   const std::vector<std::string>& unsettled = world.findings().unsettled;
   for (std::size_t i = first_unsettled; i < unsettled.size(); ++i)
@@ -116,6 +166,7 @@ void StatusLog::tell(const World& world, const StepResult& result, const std::ve
     if (found.status != Status::jumped && found.status != Status::inside_obstacle)
       report(event_of(world, found), found.max_strain);
   for (const Intrusion& found : world.findings().intrusions) report(event_of(world, found), found.depth);
+  for (const BodyIntrusion& found : world.findings().body_intrusions) report(event_of(world, found), found.depth);
   for (const UnaccountedEnergy& found : world.findings().unaccounted) report(event_of(world, found), 0);
   for (const int frame : held_back)
     report({time, "frame_too_fast", false, "", -1, world.frames()[frame],

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
@@ -31,6 +32,11 @@ struct StatusEvent {
 /// Jumps are no statuses here: they have events of their own. Of energy that is unaccounted for no end is told.
 class StatusLog {
  public:
+  StatusLog() = default;
+  /// As `write` has written it. Throws std::invalid_argument.
+  explicit StatusLog(ByteReader& bytes);
+  void write(ByteWriter& bytes) const;
+
   /// Cables that found no equilibrium, from this of Findings::unsettled on.
   void observe_start(const World& world, std::size_t first_unsettled = 0);
   /// After each step. `held_back`: ids of the frames that moved faster than `max_frame_speed`.

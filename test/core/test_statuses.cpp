@@ -193,6 +193,36 @@ TEST(Statuses, notSettledIsSaidFromTheStartUntilTheFirstStepIsDone) {
   }
 }
 
+TEST(Statuses, areRestoredWithAWorld) {
+  // Around the ball it is further than the rope is long.
+  SceneDesc scene = scenes::between_two_points(40, 0.98);
+  ObstacleDesc& ball = scene.obstacles.emplace_back();
+  ball.name = "ball";
+  ball.type = ShapeType::sphere;
+  ball.pose = {0.49, 0, 0, 0, 0, 0};
+  ball.radius = 0.1;
+  const BoundaryInputs inputs(1);
+  World world(scene, inputs);
+  ASSERT_TRUE(has(world, cable_id(0), Status::not_settled));
+  for (int i = 0; i < 3; ++i) {
+    World restored(scene, inputs);
+    restored.restore(world.save());
+    EXPECT_EQ(restored.save(), world.save()) << i;
+    const Findings &found = restored.findings(), &before = world.findings();
+    EXPECT_EQ(found.unsettled, before.unsettled) << i;
+    ASSERT_EQ(found.statuses.size(), before.statuses.size()) << i;
+    for (std::size_t k = 0; k < found.statuses.size(); ++k) {
+      EXPECT_EQ(found.statuses[k].status, before.statuses[k].status) << i;
+      EXPECT_EQ(found.statuses[k].body, before.statuses[k].body) << i;
+    }
+    ASSERT_EQ(found.intrusions.size(), before.intrusions.size()) << i;
+    World copy = world;
+    EXPECT_EQ(restored.step(inputs).status, copy.step(inputs).status) << i;
+    EXPECT_EQ(has(restored, cable_id(0), Status::not_settled), i == 0);
+    world.step(inputs);
+  }
+}
+
 TEST(Statuses, eachOfTwoOverstretchedCablesIsSaid) {
   SceneDesc scene = scenes::one_cable(10, 1.0);
   scene.cables[0].attachments = {scenes::attachment("a", PlaceDesc::At::start, {0, 0, 0}),

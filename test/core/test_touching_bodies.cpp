@@ -261,9 +261,14 @@ TEST(TouchingBodies, ComeOutOfThinBoardsOnTheSideOfTheirMiddle) {
         const BoundaryInputs inputs = initial_frames(scene);
         World world(scene, inputs);
         EXPECT_EQ(world.step(inputs).status, StepResult::Status::inside_obstacle);
+        ASSERT_EQ(world.findings().body_intrusions.size(), 1u);
+        EXPECT_EQ(world.findings().body_intrusions[0].body, 0);
+        EXPECT_EQ(world.obstacles()[world.findings().body_intrusions[0].obstacle].name, "board");
+        EXPECT_GT(world.findings().body_intrusions[0].depth, 0);
         for (int i = 0; i < 500; ++i) EXPECT_LE(world.step(inputs).status, StepResult::Status::inside_obstacle);
         const double lost = world.ledger().balance.dissipated.contact;
         for (int i = 0; i < 250; ++i) ASSERT_EQ(world.step(inputs).status, StepResult::Status::ok) << i;
+        EXPECT_TRUE(world.findings().body_intrusions.empty());
         EXPECT_NEAR(world.bodies()[0].pose.position.dot(up), 0.005, 2e-5);
         EXPECT_LT(largest_speed(world.bodies()[0]), 1e-6);
         EXPECT_NEAR(world.ledger().balance.dissipated.contact, lost, 1e-9);

@@ -192,6 +192,7 @@ def test_threads_may_share_a_camera(table, front):
     ({'noise': {'dropout_angle': 100}}, ['noise.dropout_angle: 100; allowed: any number above 0, at most 90 [degree]']),
     ({'noise': 3}, ['noise: 3; allowed: a dict']),
     ({'preset': 'kinect'}, ["preset: 'kinect'; allowed: kinect_v1, realsense_d415, realsense_d435"]),
+    ({'preset': ['kinect_v1']}, ["preset: ['kinect_v1']; allowed: kinect_v1, realsense_d415, realsense_d435"]),
     ({'seed': -1}, ['seed: -1; allowed: an integer (from 0']),
     ({'threads': 5000}, ['threads: 5000; allowed: an integer (from 0 to 1024)']),
 ])
@@ -231,3 +232,32 @@ def test_without_its_compiled_part_it_says_what_is_missing():
     program = "import sys; sys.modules['verlet_cable._camera'] = None\nimport verlet_cable.sim\nimport verlet_cable.camera"
     failed = subprocess.run([sys.executable, '-c', f'import sys; sys.path[:0] = {sys.path!r}\n' + program], stderr=subprocess.PIPE, text=True)
     assert failed.returncode == 1 and 'sudo apt-get install libembree-dev' in failed.stderr.split('\n')[-2]
+
+
+@pytest.mark.parametrize('numbers', [1e300, 1e200, 2e9, -1e10, float('nan'), float('inf')])
+def test_a_place_is_not_further_than_frames_are(front, numbers):
+    before = front.pose
+    with pytest.raises(ValueError, match=r'^pose: .*; allowed: x, y, z \[m\] \(from -1e\+09 to 1e\+09\), qx, qy, qz, qw with a quaternion|^pose: .*finite'):
+        front.pose = [numbers, 0, 0, 0, 0, 0, 1]
+    for name in ('eye', 'target'):
+        with pytest.raises(ValueError, match=rf'^{name}: .*; allowed: 3 finite numbers \[m\] \(from -1e\+09 to 1e\+09\)'):
+            front.look_at(**{'eye': [0, 0, 0], 'target': [1, 0, 0], name: [0, numbers, 0]})
+    assert np.array_equal(front.pose, before)
+
+
+def test_a_direction_may_have_any_length(front):
+    far = Camera().look_at([0, -1, 0], [0, 0, 0], [0, 0, 1e200]).pose
+    np.testing.assert_allclose(far, Camera().look_at([0, -1, 0], [0, 0, 0]).pose, atol=1e-15)
+
+
+@pytest.mark.parametrize('arguments, line', [
+    ({'images': 5}, 'images: 5; allowed: a list with some of depth'), ({'images': None}, 'images: None; allowed: a list'),
+    ({'images': [['depth']]}, "images: [['depth']]; allowed: a list"), ({'images': []}, 'images: []; allowed: a list'),
+    ({'stripes': np.zeros(3)}, 'stripes: array([0., 0., 0.]); allowed: True or False'), ({'distinct_colors': 'no'}, "distinct_colors: 'no'; "),
+    ({'light': {'shadows': 2}}, 'light.shadows: 2; allowed: True or False'), ({'light': {3: 1}}, 'light: 3; allowed: the keys direction'),
+    ({'looks': {'hose': {'stripes': 2.5}}}, "looks['hose'].stripes: 2.5; allowed: an integer, 0 or more"), ({'looks': {3: {}}}, 'looks: "3"; allowed: '),
+    ({'looks': {'hose': {'pattern': 3}}}, "looks['hose'].pattern: 3; allowed: plain"), ({'looks': {'\ud800': {}}}, 'looks: ')])
+def test_what_cannot_be_rendered_is_named(table, front, arguments, line):
+    with pytest.raises(ValueError) as caught:
+        front.render(World(Scene.from_dict(table)), **arguments)
+    assert str(caught.value).startswith(line) and '; allowed: ' in str(caught.value)

@@ -1,5 +1,8 @@
 """verlet_cable.camera.coco writes what COCO's readers read, and what it says is what the images show."""
 import json
+import pathlib
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -9,6 +12,8 @@ from verlet_cable.sim import Batch, Scene, World
 pytest.importorskip('verlet_cable.camera')
 image = pytest.importorskip('PIL.Image')
 from verlet_cable.camera import Camera, coco  # noqa: E402
+
+PROGRAM = pathlib.Path(__file__).resolve().parents[2] / 'scripts/cable_coco'
 
 
 @pytest.fixture
@@ -118,8 +123,24 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
         coco.Dataset(tmp_path / 'full')
     with pytest.raises(ValueError, match='keypoints: 1; allowed: an integer'):
         coco.Dataset(tmp_path / 'set', keypoints=1)
-    dataset = coco.Dataset(tmp_path / 'set')
-    for arguments, text in (({'target': [0, 0]}, 'target: '), ({'target': [0, 0, 0], 'distance': (2, 1)}, 'distance: (2, 1); allowed: two'),
+    for path in (5, None, ['set']):
+        with pytest.raises(TypeError, match=r'path: .*; allowed: the path of a directory that is new or empty, as text, bytes or os.PathLike'):
+            coco.Dataset(path)
+    for path in ('', 'a\0b', '\ud800', str(tmp_path / 'full/file')):
+        with pytest.raises(ValueError, match='path: .*; allowed: a directory that is new or empty'):
+            coco.Dataset(path)
+    dataset = coco.Dataset(str(tmp_path / 'set').encode())
+    for arguments, error, text in (({'camera': 5}, TypeError, 'camera: 5; allowed: a Camera'), ({'world': None}, TypeError, 'world: None; allowed: a World or'),
+                                   ({'looks': 5}, TypeError, 'looks: 5; allowed: None, or a dict'), ({'vary_looks': 'no'}, TypeError, "vary_looks: 'no'; ")):
+        with pytest.raises(error) as caught:
+            dataset.add(**{'camera': Camera(8, 8), 'world': World(crossed), **arguments})
+        assert str(caught.value).startswith(text)
+    for truth, error in ((5, TypeError), ({'a': 1}, ValueError), ({'a': {'u': [1], 'v': [1, 2], 'positions': [[1, 2, 3]]}}, ValueError),
+                         ({'a': {'u': None, 'v': 3, 'positions': 'x'}}, ValueError)):
+        with pytest.raises(error, match='^truth.*; allowed: a truth as of Camera.render'):
+            coco.crossings(truth)
+    assert coco.crossings({}) == []
+    for arguments, text in (({'target': [0, 0]}, 'target: '), ({'target': [1e200, 0, 0]}, 'target: [1e+200, 0, 0]; allowed: 3 finite numbers [m] (from -1e+09'), ({'target': [0, 0, 0], 'distance': (2, 1)}, 'distance: (2, 1); allowed: two'),
                             ({'target': [0, 0, 0], 'elevation': (0, 90)}, 'elevation: (0, 90); allowed: two numbers')):
         with pytest.raises(ValueError) as caught:
             dataset.add(Camera(8, 8), World(crossed), **arguments)
@@ -136,3 +157,115 @@ def test_nothing_is_added_to_what_is_closed(crossed, tmp_path):
     assert len(list((tmp_path / 'set/images').iterdir())) == len(dataset) == 1
     dataset.close()
     assert (tmp_path / 'set/annotations.json').read_bytes() == before
+
+
+def test_images_from_elsewhere_are_written_alike(crossed, tmp_path):
+    world, camera = World(crossed), Camera(64, 48, 0.9).look_at([0, -0.2, 2], [0, 0, 0])
+    seen, labels = camera.render(world), camera.labels(world)
+    with coco.Dataset(tmp_path / 'a') as first, coco.Dataset(tmp_path / 'b') as second:
+        first.add(camera, world, vary_looks=False)
+        second.add_images(seen, labels, world.time, camera.matrix, camera.distortion, camera.pose)
+    for folder in ('images', 'masks', 'depth'):
+        assert (tmp_path / 'a' / folder / '00000001.png').read_bytes() == (tmp_path / 'b' / folder / '00000001.png').read_bytes()
+    assert check_format(tmp_path / 'a') == check_format(tmp_path / 'b')
+    dataset = coco.Dataset(tmp_path / 'c')
+    right = {'images': seen, 'labels': labels, 'time': 0.0, 'matrix': camera.matrix}
+    for wrong, text in (({'images': 3}, 'images: 3; allowed: a dict with depth'), ({'images': {**seen, 'mask': seen['depth']}}, 'images: depth (48, 64) float32'),
+                        ({'images': {**seen, 'truth': {'under': {}}}}, "truth['under']: {}; allowed: "), ({'labels': ['over']}, "labels: ['over']; allowed: "),
+                        ({'time': 'now'}, "time: 'now'; allowed: a finite number"), ({'matrix': [1, 2]}, 'matrix: [1, 2]; allowed: finite numbers of the shape (3, 3)'),
+                        ({'distortion': [1e400] * 5}, 'distortion: [inf'), ({'pose': [0, 0, 0]}, 'pose: [0, 0, 0]; allowed: ')):
+        with pytest.raises(ValueError) as caught:
+            dataset.add_images(**{**right, **wrong})
+        assert str(caught.value).startswith(text)
+    assert len(dataset) == 0
+
+
+def run(*arguments):
+    """(exit status, what it prints, errors)"""
+    done = subprocess.run([sys.executable, str(PROGRAM), *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    return done.returncode, done.stdout, done.stderr
+
+
+@pytest.fixture
+def files(crossed, tmp_path):
+    """A scene whose cable a hand moves, its motion, a camera and a sweep."""
+    (tmp_path / 'scene.yaml').write_text("""
+time_step: 0.005
+materials: {m: {linear_density: 0.1, radius: 0.01}}
+cables: [{name: rope, length: 1.0, segments: 20, material: m, attachments: [{name: hand, at: start, frame: hand}]},
+         {name: other, length: 0.5, segments: 10, material: m, attachments: [{name: peg, at: start, offset: [0.1, 0, 0]}]}]
+""")
+    (tmp_path / 'motion.csv').write_text('t,frame,x,y,z,qx,qy,qz,qw\n0,hand,0,0,0,0,0,0,1\n1,hand,0.5,0,0,0,0,0,1\n')
+    (tmp_path / 'camera.yaml').write_text('preset: kinect_v1\nwidth: 96\nheight: 72\nnear: 1e-1\nrate: 15\nnoise: {dropout_angle: 80}\n')
+    (tmp_path / 'sweep.yaml').write_text("""
+scene: scene.yaml
+motion: motion.csv
+duration: 0.5
+record: {rate: 4, fields: [positions]}
+samples: 5
+vary:
+  cables[0].length: {choice: [0.8, 1.0, -1.0]}
+""")
+    return tmp_path
+
+
+def test_a_scene_that_runs_becomes_a_data_set(files):
+    options = ['--motion', files / 'motion.csv', '--duration', 1, '--rate', 2, '--views', 2, '--camera', files / 'camera.yaml', '--keypoints', 5]
+    status, output, errors = run(files / 'scene.yaml', '--output', files / 'set', *options)
+    assert (status, output, errors) == (0, f'6 images in {files}/set\n', '')
+    content = check_format(files / 'set')
+    assert [entry['time'] for entry in content['images']] == [0, 0, 0.5, 0.5, 1, 1]
+    assert {(entry['width'], entry['height']) for entry in content['images']} == {(96, 72)}
+    assert len({tuple(entry['pose']) for entry in content['images']}) == 6
+    assert {entry['cable'] for entry in content['annotations']} == {'rope', 'other'}
+    # All of it is as cable_sim has it.
+    world = World(Scene.load(files / 'scene.yaml'), files / 'motion.csv')
+    world.step(200)
+    last = content['images'][-1]
+    pose = np.array(last['pose'])
+    shown = Camera(**dict(preset='kinect_v1', width=96, height=72))
+    shown.pose = pose
+    nodes = shown.render(world, ['truth'])['truth']['rope']['positions'][::5]
+    annotation, = (a for a in content['annotations'] if a['image_id'] == last['id'] and a['cable'] == 'rope')
+    np.testing.assert_allclose(annotation['positions'], nodes, atol=1e-6)
+    # The same program writes the same files; another seed others.
+    assert run(files / 'scene.yaml', '--output', files / 'again', *options)[0] == 0
+    assert run(files / 'scene.yaml', '--output', files / 'other', '--seed', 3, *options)[0] == 0
+    names = sorted(path.relative_to(files / 'set') for path in (files / 'set').rglob('*.*'))
+    assert len(names) == 19
+    assert all((files / 'set' / name).read_bytes() == (files / 'again' / name).read_bytes() for name in names)
+    assert all((files / 'set' / name).read_bytes() != (files / 'other' / name).read_bytes() for name in names)
+
+
+def test_a_sweep_becomes_a_data_set(files):
+    status, output, errors = run('--sweep', files / 'sweep.yaml', '--output', files / 'set', '--camera', files / 'camera.yaml', '--scene-looks')
+    images, failed = 3 * (5 - errors.count('sample ')), errors.count('sample ')
+    assert (status, output) == (0, f'{images} images in {files}/set; {failed} samples failed\n')
+    assert 0 < failed < 5 and 'cables[0].length: -1; allowed: ' in errors
+    content = check_format(files / 'set')
+    assert [entry['time'] for entry in content['images']] == [0, 0.25, 0.5] * (5 - failed)
+
+
+def test_what_the_program_cannot_use_is_named(files):
+    (files / 'bad.yaml').write_text('width: 0\nheigth: 3\n')
+    (files / 'full').mkdir()
+    (files / 'full/file').touch()
+    scene = files / 'scene.yaml'
+    for arguments, lines in (
+            ([scene, '--output', files / 'a'], ['frames: nothing has placed hand']),
+            ([scene, '--output', files / 'a', '--camera', files / 'bad.yaml', '--views', 0, '--rate', -1, '--duration', -2],
+             ['bad.yaml: heigth: unknown key', '--views: 0; allowed: ', '--rate: -1; allowed: ', '--duration: -2; allowed: ', 'frames: nothing has']),
+            ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--rate', 1000], ['--rate: 1000; allowed: at most 1 / time_step']),
+            ([scene, '--output', files / 'a', '--motion', files / 'none.csv'], ['none.csv']),
+            ([scene, '--output', files / 'full', '--motion', files / 'motion.csv'], ['a directory that is new or empty']),
+            (['--sweep', files / 'sweep.yaml', '--output', files / 'a', '--rate', 3], ['--rate: given with --sweep; allowed: rate in']),
+            ([files / 'none.yaml', '--output', files / 'a'], ['scene: cannot read']),
+            (['--output', files / 'a'], ['SCENE.yaml']),
+            ([scene, '--output', files / 'a', '--distance', 'nan', 1], ["'nan'; allowed: a finite number"]),
+            ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--distance', 2, 1], ['--distance: 2 1; allowed: two numbers'])):
+        status, output, errors = run(*arguments)
+        assert (status, output) == (2, '')
+        for line in lines:
+            assert line in errors
+        assert 'Traceback' not in errors
+        assert not (files / 'a').exists()

@@ -1,6 +1,7 @@
 """What World.events tells: as cable_sim and CableEvent.msg."""
 import pickle
 
+import pytest
 from worlds import IDENTITY, world_of
 
 from verlet_cable.sim import Event
@@ -77,3 +78,39 @@ def test_a_copy_has_the_events_that_were_not_read(ropes):
     assert len(other.events()) == 1
     other.cut('first', node=4)
     assert [event.type for event in world.events()] == ['PINNED']
+
+
+BOARD = {
+    'time_step': 0.002, 'cables': [], 'materials': {},
+    'bodies': [{'name': name, 'mass': 0.1, 'shapes': [{'type': 'box', 'size': [0.04, 0.04, 0.04]}], 'pose': [x, 0, z, 0, 0, 0],
+                'linear_damping': 1.0} for name, x, z in (('plug', 0, -0.01), ('deep', 0.5, -0.03), ('beside', 1.0, 0.021))],
+    'obstacles': [{'name': 'board', 'type': 'box', 'size': [3, 1, 0.2], 'pose': [0.5, 0, -0.1, 0, 0, 0]}]}
+
+
+def test_a_body_inside_an_obstacle_is_told_as_a_cable_is(cable_sim):
+    """How deep: of a box of 0.04 m, whose middle is 0.01 m below the surface of the board, the lowest corners are 0.03 m."""
+    summary, _ = cable_sim(BOARD, '--duration', '2')
+    world = world_of(BOARD)
+    assert world.step() == 'inside_obstacle'
+    begins = {event.cable: event for event in world.events()}
+    assert set(begins) == {'plug', 'deep'}
+    for name, depth in (('plug', 0.03), ('deep', 0.05)):
+        event = begins[name]
+        assert (event.type, event.other, event.time) == ('inside_obstacle', 'board', world.time)
+        assert float(event.message.split()[2]) == pytest.approx(depth, abs=2e-4)
+        assert event.message.endswith('m deep inside board and is pushed out')
+    world.step(999)
+    ends = {event.cable: event for event in world.events() if event.type == 'inside_obstacle_end'}
+    assert set(ends) == {'plug', 'deep'} and 'deepest 0.03' in ends['plug'].message
+    assert world.step(10) == 'ok' and world.body_pose('plug')[2] > 0.0195
+    told = [(e.type, e.cable, e.time, e.message) for e in [*begins.values(), *ends.values()]]
+    said = [(e['type'], e['cable'], e['time'], e['message']) for e in summary['events'] if e['type'].startswith('inside_obstacle')]
+    assert sorted(told) == sorted(said)
+
+
+def test_what_is_inside_goes_with_its_obstacle():
+    world = world_of(BOARD)
+    world.step()
+    world.remove_obstacle('board')
+    assert world.copy().events() == world.events() != []
+    assert world.step(100) == 'ok'

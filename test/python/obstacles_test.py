@@ -65,3 +65,27 @@ def test_a_mesh_is_read_from_a_directory(hang, tmp_path):
         world.set_obstacle('wedge', type='mesh', uri='wedge.obj')
     world.set_obstacle('wedge', type='mesh', uri='wedge.obj', directory=tmp_path)
     assert world.obstacle_names == ['wedge']
+
+
+@pytest.mark.parametrize('name, key', [('first', 'cables[0].name'), ('plug', 'bodies[0].name')])
+def test_what_contacts_tell_by_its_name_has_a_name_of_its_own(ropes, name, key):
+    """Contacts, events, contact_force() and masks have no more than the name of what is touched."""
+    world = world_of(ropes)
+    before = world.state_hash
+    with pytest.raises(ValueError, match=f'obstacle "{name}": name: that of a .*; allowed: names that no cable, net, particle or body has'):
+        world.set_obstacle(name, **TABLE)
+    assert world.state_hash == before
+    ropes['obstacles'][0]['name'] = name
+    with pytest.raises(SceneError) as caught:
+        world_of(ropes)
+    assert caught.value.errors == [f'obstacles[0].name: "{name}"; allowed: a name that is used once; it is {key} already']
+
+
+def test_pieces_have_names_of_their_own(ropes):
+    ropes['obstacles'].append({'name': 'first_2', **TABLE})
+    ropes['bodies'][0]['name'] = 'first_3'
+    world = world_of(ropes)
+    assert world.cut('first', node=5).second == 'first_4'
+    # Guides touch nothing: an obstacle may have the name of one.
+    ropes['guides'] = [{'name': 'first_2', 'cable': 'first', 'at': 0.5, 'offset': [0.5, 0, 0]}]
+    assert world_of(ropes).guide_names == ['first_2']

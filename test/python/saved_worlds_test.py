@@ -267,3 +267,68 @@ def test_a_state_that_cannot_be_is_refused():
     with pytest.raises(KeyError, match='rope'):
         world.set_state('rope', positions=numpy.zeros((21, 3)))
     assert world.state_hash == before
+
+
+def unsettled():
+    """Around the ball it is further than the hose is long: it finds no equilibrium."""
+    scene = copy.deepcopy(HOSE)
+    scene['obstacles'] = [{'name': 'ball', 'type': 'sphere', 'radius': 0.1, 'pose': [0.49, 0, 0, 0, 0, 0]}]
+    scene['cables'][0]['attachments'][1]['initial_pose'][0] = 0.98
+    return scene
+
+
+def told(world):
+    return [(event.time, event.type, event.cable, event.message) for event in world.events()]
+
+
+def test_what_was_told_of_a_world_is_told_by_its_copies():
+    """That it did not settle, until a step has said so; then no more."""
+    scene = Scene.from_dict(unsettled())
+    world = World(scene)
+    events = told(world.copy())
+    assert ('not_settled', 'hose') in [event[1:3] for event in events]
+    for other in forms(world, scene):
+        assert told(other) == events
+        assert other.step() == world.copy().step() != 'ok'
+        assert 'not_settled' not in [event[1] for event in told(other)]
+        assert 'not_settled_end' in [event[1] for event in (other.step(200), told(other))[1]]
+    world.step(2)
+    world.events()
+    after = world.copy().step()
+    for other in forms(world, scene):
+        assert other.step() == after
+        assert 'not_settled' not in [event[1] for event in told(other)]
+
+
+def test_events_that_were_not_read_are_in_pickles():
+    world = begun(HOSE)
+    world.events()
+    world.cut('hose', node=10)
+    world.pin('hose_2', node=5, keep_offset=True)
+    events = told(world.copy())
+    assert [event[1] for event in events] == ['CUT', 'PINNED']
+    for other in (copy.deepcopy(world), pickle.loads(pickle.dumps(world))):
+        assert told(other) == events
+    batch = Batch(Scene.from_dict(HOSE), 2)
+    batch.cut(1, 'hose', node=10)
+    for other in (copy.deepcopy(batch), pickle.loads(pickle.dumps(batch))):
+        assert [event.type for event in other.events(1)] == ['CUT'] and other.events(0) == []
+
+
+def test_a_status_that_began_before_ends_after_a_pickle():
+    def overstretched(world):
+        return [event[1] for event in told(world) if event[1].startswith('overstretched')]
+
+    world = begun(HOSE)
+    for step in range(100):
+        world.set_frame('hand', [0.7 + 0.4 * (step + 1) / 100, 0, 0], IDENTITY)
+        world.step()
+    assert overstretched(world) == ['overstretched']
+    again, loaded = pickle.loads(pickle.dumps(world)), World.load(Scene.from_dict(HOSE), world.save())
+    # Bytes have what holds on, and not what was read.
+    assert overstretched(again) == [] and overstretched(loaded) == ['overstretched']
+    for other in (again, loaded):
+        for step in range(300):
+            other.set_frame('hand', [1.1 - 0.4 * min(step + 1, 100) / 100, 0, 0], IDENTITY)
+            other.step()
+        assert overstretched(other) == ['overstretched_end']

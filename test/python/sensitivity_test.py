@@ -162,3 +162,27 @@ def test_derivatives_end_with_an_edit():
     piece = world.cut('hose', node=6).second
     with pytest.raises(ValueError, match='came later'):
         world.sensitivity(f'positions:{piece}')
+
+
+def test_what_is_asked_for_wrongly_is_named_with_what_is_allowed():
+    """Of both arguments at once."""
+    world = world_of(HOSE)
+    world.settle()
+    with pytest.raises(ValueError) as caught:
+        world.sensitivity('position:hose')
+    lines = str(caught.value).splitlines()
+    assert lines[0].startswith('outputs: "position:hose"; allowed: positions:CABLE, velocities:CABLE')
+    assert lines[1].startswith('parameters: None; allowed: KEY:CABLE with a key axial_stiffness, ') and 'track_sensitivity' in lines[1]
+    with pytest.raises(ValueError) as caught:
+        world.sensitivity(['positions:rope', 'tension:hose', 'wrench:hose'], ['drag:rope', 'mass:hose'])
+    assert [line.split(';')[0] for line in str(caught.value).splitlines()] == [
+        'outputs: "positions:rope"', 'outputs: "wrench:hose"', 'parameters: "drag:rope"', 'parameters: "mass:hose"']
+    for call, text in ((lambda: world.sensitivity(5, 'gravity'), 'outputs: 5; allowed: a text, or a list of texts: positions:CABLE'),
+                       (lambda: world.sensitivity(['positions:hose', 3], 'gravity'), 'outputs: 3; allowed: a text, or a list'),
+                       (lambda: world.sensitivity('positions:hose', 5), 'parameters: 5; allowed: a text, or a list of texts: KEY:CABLE'),
+                       (lambda: world.track_sensitivity(1j), 'parameters: 1j; allowed: a text, or a list of texts: KEY:CABLE')):
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert str(caught.value).startswith(text)
+    with pytest.raises(ValueError, match=r'^outputs: \[\]; allowed: positions:CABLE'):
+        world.sensitivity([], 'gravity')

@@ -1,5 +1,6 @@
 """Bodies, guides and cables that are put elsewhere, one alone and several at once."""
 import copy
+import pathlib
 
 import numpy
 import pytest
@@ -7,6 +8,10 @@ import pytest
 from verlet_cable.sim import Batch, Scene, World
 from worlds import IDENTITY, world_of
 
+CONFIG = pathlib.Path(__file__).resolve().parents[2] / 'config'
+NOT_SCENES = {'materials.yaml', 'replay.yaml', 'sweep.yaml'}
+SHIPPED = sorted(path for folder in ('', 'examples', 'scenes', 'scenes/lecture') for path in (CONFIG / folder).glob('*.yaml')
+                 if path.name not in NOT_SCENES)
 DT = 0.002
 ROPE = {'linear_density': 0.05, 'radius': 0.003}
 PLUG = {'name': 'load', 'mass': 0.5, 'inertia': [1e-3, 1e-3, 1e-3], 'pose': [0, 0, -1, 0, 0, 0]}
@@ -173,3 +178,70 @@ def test_a_batch_sets_states_of_one_of_its_worlds():
     batch.step(20)
     alone.step(20)
     assert batch.state_hash[1] == alone.state_hash != batch.state_hash[0]
+
+
+def states_of(world):
+    """{name: its own state} of all cables, bodies, and guides that have a cable."""
+    states = {name: {'positions': world.positions(name), 'velocities': world.velocities(name)} for name in world.cable_names}
+    states.update({name: {'pose': world.body_pose(name), 'twist': world.body_twist(name)} for name in world.body_names})
+    for name in world.guide_names:
+        try:
+            states[name] = {'arc_length': world.arc_length(name)}
+        except ValueError as error:
+            assert 'has no cable in it' in str(error)
+    return states
+
+
+@pytest.mark.parametrize('path', SHIPPED, ids=lambda path: path.stem)
+def test_what_a_shipped_scene_tells_of_itself_can_be_set(path):
+    """Of each thing alone, and of all at once: it then goes on as it would have."""
+    motion = next((file for file in (path.with_suffix('.csv'), path.with_name(path.stem + '_motion.csv')) if file.exists()), None)
+    world = World(Scene.load(path), motion)
+    for steps in (0, round(0.5 / world.scene.time_step)):
+        world.step(steps)
+        states = states_of(world)
+        ahead = world.copy()
+        ahead.step(2)
+        for some in [*({name: state} for name, state in states.items()), states]:
+            other = world.copy()
+            other.set_states(some)
+            for name, state in states_of(other).items():
+                for key in ('positions', 'pose', 'arc_length'):
+                    if key in state:
+                        assert state[key] == pytest.approx(states[name][key], abs=1e-6), (name, list(some))
+            assert other.step(2) in ('ok', 'jumped', ahead.copy().step()), list(some)
+            for name in world.body_names:
+                assert other.body_pose(name) == pytest.approx(ahead.body_pose(name), abs=1e-3), (name, list(some))
+
+
+def eyelet(**material):
+    """A load on a rope that comes from a peg through an eyelet at the origin."""
+    return {'time_step': DT, 'materials': {'m': dict(ROPE, **material)}, 'bodies': [PLUG],
+            'contact': {'self': True, 'between_cables': True, 'friction': 0.3},
+            'guides': [{'name': 'eye', 'cable': 'rope', 'at': 1.0, 'friction': 0.1}],
+            'cables': [{'name': 'rope', 'length': 2.0, 'segments': 40, 'material': 'm', 'attachments': [
+                {'name': 'peg', 'at': 'start', 'offset': [-0.98, 0, 0]}, {'name': 'hook', 'at': 'end', 'body': 'load'}]}]}
+
+
+@pytest.mark.parametrize('material', [{}, {'bending_stiffness': 1e-3, 'bending_damping': 1e-5}, {'axial_stiffness': 1e4, 'axial_damping': 1.0}],
+                         ids=['rope', 'wire', 'elastic'])
+def test_all_that_a_load_at_an_eyelet_can_do_can_be_set(material):
+    """Anywhere within what the eyelet lets through, but where the rope would go through itself: its bight is on the peg's side."""
+    begun = world_of(eyelet(**material))
+    begun.step(20)
+    random = numpy.random.default_rng(1)
+    for _ in range(25):
+        world = begun.copy()
+        through = random.uniform(0.985, 1.9)
+        reach = (2 - through) * random.choice([random.uniform(0.2, 0.95), 0.9995])
+        angle = random.uniform(0, 1.2)
+        place = pose(reach * numpy.sin(angle), 0, -reach * numpy.cos(angle))
+        world.set_states({'load': {'pose': place, 'twist': numpy.zeros(6)}, 'eye': {'arc_length': through}})
+        case = through, reach, angle
+        assert world.arc_length('eye') == pytest.approx(through, abs=1e-6), case
+        assert world.body_pose('load') == pytest.approx(place, abs=1e-12), case
+        assert lengths(world).sum() == pytest.approx(2, rel=2e-3), case
+        assert world.step(25) in ('ok', 'jumped'), case
+        # It is let go from there: no faster than what falls, or swings.
+        speed = numpy.linalg.norm(world.body_twist('load')[:3])
+        assert speed < 1.2 * 9.81 * 25 * DT, case

@@ -216,7 +216,8 @@ TEST_F(Robot, mistakesAreNamed) {
   expect("{" + file() + ", links: [base, elbow]}",
          "robot.links[1]: \"elbow\"; allowed: a link of the robot: base, arm, tool, base_1");
   expect("{" + file() + ", padding: -0.1}", "robot.padding: -0.1;");
-  expect("{" + file() + "}\nobstacles: [{name: arm, type: plane}]", "robot.arm: used twice;");
+  expect("{" + file() + "}\nobstacles: [{name: arm, type: plane}]",
+         "robot.arm: \"arm\"; allowed: a name that is used once; it is obstacles[0].name already");
   write("text.urdf", "no robot at all");
   expect("{file: " + path("text.urdf") + "}", "robot.file: \"" + path("text.urdf") + "\": no URDF: ");
   write("loop.urdf",

@@ -73,6 +73,7 @@ void add_findings(const Findings& findings, Bytes& bytes) {
     for (const int guide : *guides) bytes(guide);
   for (const Jump& j : findings.jumps) bytes(j.attachment, j.distance, j.time, j.duration);
   for (const Intrusion& i : findings.intrusions) bytes(i.cable, i.segment, i.obstacle, i.depth);
+  for (const BodyIntrusion& i : findings.body_intrusions) bytes(i.body, i.obstacle, i.depth);
   for (const SimulatedContact& c : findings.contacts) {
     bytes(c.cable, c.segment, c.obstacle, c.other_cable, c.other_segment, c.body);
     bytes(c.position);

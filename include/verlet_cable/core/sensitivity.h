@@ -27,6 +27,9 @@ class Sensitivity {
     given,   ///< the same whatever the parameters are; not for lengths and poses, with which it would not go together
     settled  ///< the equilibrium that it is at, which depends on them
   };
+  /// What parameters there are, in words.
+  static const char* const parameter_words;
+
   /// Throws std::invalid_argument, one line for each error.
   Sensitivity(const World& world, const std::vector<std::string>& parameters, Start start);
   Sensitivity(Sensitivity&&) noexcept;

@@ -92,7 +92,7 @@ struct StepResult {
     ok,
     jumped,           ///< the velocity of a frame changed too much for a motion: what the frame holds was carried along
     overstretched,    ///< held points are further apart than the cable or net between them is long: it was lengthened
-    inside_obstacle,  ///< a cable is inside an obstacle, see Intrusion, or a body is pushed out of one
+    inside_obstacle,  ///< a cable is inside an obstacle, see Intrusion, or a body, see BodyIntrusion
     not_settled,      ///< no equilibrium was found to start from, or to settle in; said until the first step after that is done
     /// A substep of the smallest size did not converge, a net is held where it cannot be, or the step took too much work: the
     /// cable or net, or the bodies and their cables, lost their velocity and continue from rest. Or a cable is inside an
@@ -174,6 +174,13 @@ struct Intrusion {
   double depth = 0;  ///< [m] of the cable's surface below that of the obstacle
 };
 
+/// Likewise a body that is deep inside an obstacle and is pushed out.
+struct BodyIntrusion {
+  int body = 0;      ///< index into World::bodies()
+  int obstacle = 0;  ///< index into World::obstacles()
+  double depth = 0;  ///< [m] of the deepest place where their surfaces were compared
+};
+
 /// A status of a cable, net, particle or body that is not ok. Edits and breaks keep its indices valid.
 struct StatusFinding {
   BodyId body;
@@ -209,6 +216,7 @@ struct Findings {
   std::vector<EndedLoad> ended_loads;
   std::vector<Jump> jumps;                      ///< that have ended, at most one per attachment
   std::vector<Intrusion> intrusions;            ///< at most one per cable and obstacle
+  std::vector<BodyIntrusion> body_intrusions;   ///< at most one per body and obstacle
   std::vector<UnaccountedEnergy> unaccounted;   ///< beyond what rounding and tolerances explain
   std::vector<SimulatedContact> contacts;       ///< where cables touched something
   std::vector<SimulatedContact> body_contacts;  ///< where bodies touched obstacles
@@ -291,10 +299,11 @@ class World {
   /// All joints of a cable from start to end: those of inner nodes, and those between clamps and the segments next to them.
   void view_joints(int cable, std::vector<JointView>& joints) const;
   std::uint64_t hash() const;  ///< of everything that the future depends on
-  /// Everything that the future depends on, and contacts, as bytes: for this version of the package on this kind of machine.
+  /// Everything that the future depends on, and those findings that are no events (contacts, what is inside obstacles, statuses,
+  /// and what the start could not do), as bytes: for this version of the package on this kind of machine.
   std::string save() const;
-  /// Goes on from what `save` gave of a world whose scene differs from this one's in numbers only, as a copy of that world would.
-  /// Findings but contacts come with the next step. Throws std::invalid_argument with what is wrong with the bytes; the world is
+  /// Goes on from what `save` gave of a world whose scene differs from this one's in numbers only, as a copy of that world would,
+  /// with the findings that are saved and no others. Throws std::invalid_argument with what is wrong with the bytes; the world is
   /// then as before.
   void restore(const std::string& bytes);
 

@@ -10,7 +10,9 @@ namespace verlet_cable::view {
 
 /// What a depth camera does to depth. All of it is off by default. Colors and masks are not touched.
 struct SensorModel {
-  /// Standard deviation of the depth z: a + b z + c z^2, in m, 1 and 1/m. Not below 0 from the camera's `near` to its `far`.
+  /// Standard deviation of what is measured of the depth z: a + b z + c z^2, in m, 1 and 1/m, steps of disparity included: noise
+  /// is so much less before it is rounded. Where a step alone has more (its 12^-1/2), that is the deviation. Not below 0 from the
+  /// camera's `near` to its `far`.
   std::array<double, 3> axial{};
   double dropout_angle = 90;  ///< [degree] above 0 to 90: no depth where the line of sight is further from the surface's normal
   double baseline = 0;  ///< [m] place of the second imager, or of the projector, along x of the optical frame; 0: none. What that

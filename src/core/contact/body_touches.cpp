@@ -154,7 +154,14 @@ void BodyTouches::find_shape(const TouchingBody& touching, int index, const Movi
     add_feature(position, normal, at(moving.start.inverse(), position - found.distance * normal), found.distance - padding,
                 obstacle_feature | found.feature);
   }
-  if (inside) add(box.center(), way_out, out.point + padding * out.normal, gentle, middle_feature, true);
+  if (!inside) return;
+  const std::size_t before = touches.size();
+  add(box.center(), way_out, out.point + padding * out.normal, gentle, middle_feature, true);
+  if (touches.size() == before) return;
+  double deepest = 0;
+  for (const std::vector<FeatureContact>* all : {&found_, &found_on_obstacle_})
+    for (const FeatureContact& found : *all) deepest = std::max(deepest, padding - found.distance);
+  touches.back().inside_depth = deepest;
 }
 
 void BodyTouches::follow_scheme(Scheme scheme, const ContactRules& rules, double h, std::vector<Touch>& touches) {

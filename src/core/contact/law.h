@@ -34,6 +34,7 @@ struct Touch {
   Vector3 position = Vector3::Zero();   ///< [m] of the point
   Vector3 normal = Vector3::UnitZ();    ///< out of what is touched
   bool inside = false;                  ///< it was deep inside from the start: it is pushed out gently
+  double inside_depth = 0;              ///< [m] of the deepest place of a shape that is inside
   double inside_for = 0;                ///< [s] it has been inside
   bool yields = false;                  ///< likewise two cables: with no more than stops them within a step
   double gap = 0;                       ///< [m] between the surfaces at the start of the substep

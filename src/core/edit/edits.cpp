@@ -225,7 +225,9 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
   const auto taken = [&](const std::string& n) {
     const auto has_name = [&](const auto& desc) { return desc.name == n; };
     const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
-    return find(state.cables, n) >= 0 || any(state.scene->cables) || any(state.scene->nets) || any(state.scene->particles);
+    const SceneDesc& scene = *state.scene;
+    return find(state.cables, n) >= 0 || any(scene.cables) || any(scene.nets) || any(scene.particles) || any(state.bodies) ||
+           any(state.guides) || any(state.obstacles);
   };
   release_wheels_on(cable, segment);
   CableModel model = *state.cables[cable].model;

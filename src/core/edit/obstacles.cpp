@@ -59,6 +59,18 @@ std::string problem_of(const Obstacle& obstacle, std::size_t frames) {
   return std::visit([](const auto& shape) { return problem_of(shape); }, obstacle.shape);
 }
 
+/// What has a name that contacts tell; null: nothing but obstacles.
+const char* kind_of(const std::string& name, const State& state) {
+  const auto has_it = [&](const auto& descs) {
+    return std::any_of(descs.begin(), descs.end(), [&](const auto& desc) { return desc.name == name; });
+  };
+  const SceneDesc& scene = *state.scene;
+  if (find(state.cables, name) >= 0 || has_it(scene.cables)) return "cable";
+  if (has_it(scene.nets)) return "net";
+  if (has_it(scene.bodies)) return "body";
+  return has_it(scene.particles) ? "particle" : nullptr;
+}
+
 auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
   return std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) { return obstacle.name == name; });
 }
@@ -82,12 +94,23 @@ void find_anchors(const State& state, Obstacle& obstacle) {
   std::sort(obstacle.holders.begin(), obstacle.holders.end());
 }
 
+/// What is inside of an obstacle that goes, and the numbers of those behind it.
+template <class Found>
+void leave_out(int obstacle, std::vector<Found>& intrusions) {
+  const auto is_in_it = [&](const Found& found) { return found.obstacle == obstacle; };
+  intrusions.erase(std::remove_if(intrusions.begin(), intrusions.end(), is_in_it), intrusions.end());
+  for (Found& found : intrusions)
+    if (found.obstacle > obstacle) --found.obstacle;
+}
+
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   Obstacle obstacle = set.obstacle;
-  if (const std::string problem = problem_of(obstacle, state.frames.names.size()); !problem.empty())
-    return refused("obstacle " + quoted(obstacle.name) + ": " + problem);
+  std::string problem = problem_of(obstacle, state.frames.names.size());
+  if (const char* other = kind_of(obstacle.name, state); problem.empty() && other != nullptr)
+    problem = std::string("name: that of a ") + other + "; allowed: names that no cable, net, particle or body has";
+  if (!problem.empty()) return refused("obstacle " + quoted(obstacle.name) + ": " + problem);
   obstacle.pose.orientation.normalize();
   obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
@@ -110,11 +133,8 @@ EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
   for (BodyProgress& progress : state.body_progress) forget_obstacle(found->id, progress.contacts);
   state.obstacles.erase(found);
-  const auto names_it = [&](const Intrusion& intrusion) { return intrusion.obstacle == index; };
-  findings.intrusions.erase(std::remove_if(findings.intrusions.begin(), findings.intrusions.end(), names_it),
-                            findings.intrusions.end());
-  for (Intrusion& intrusion : findings.intrusions)
-    if (intrusion.obstacle > index) --intrusion.obstacle;
+  leave_out(index, findings.intrusions);
+  leave_out(index, findings.body_intrusions);
   findings.contacts.clear();
   findings.body_contacts.clear();
   return {true, "", name};

@@ -8,6 +8,7 @@
 #include "rod/initial_shape.h"
 #include "rod/length_projection.h"
 #include "rod/rod_frames.h"
+#include "rod/span_shapes.h"
 #include "scene/polyline_length.h"
 #include "verlet_cable/core/cable_materials.h"
 #include "verlet_cable/core/number_text.h"
@@ -24,6 +25,12 @@ constexpr double most_let_through = 0.5;
 constexpr double nearly_straight = 3e-4;
 /// As of what begins.
 constexpr double most_strain = 1e-3, most_elastic_strain = 0.02;
+/// Of a segment's length: nothing goes through a guide that is told where it is.
+constexpr double rounding_of_lengths = 1e-9;
+/// Of strains that are compared.
+constexpr double strain_rounding = 1e-9;
+/// [m], [1], [m/s], [1/s] Bodies that are no further from a pose or twist have it.
+constexpr double same_pose = 1e-9;
 
 /// Of vectors for each node [m], [m/s].
 void check_nodes(const std::string& field, const std::optional<std::vector<Vector3>>& vectors, const CableState& cable,
@@ -48,10 +55,28 @@ std::string not_free(int body, const State& state) {
   return "";
 }
 
+/// But for rounding.
+bool is_pose_of(const SimulatedBody& body, const Pose& pose) {
+  const Quaternion turn = body.pose.orientation.conjugate() * pose.orientation.normalized();
+  return (pose.position - body.pose.position).norm() <= same_pose && turn.vec().norm() <= same_pose;
+}
+
+bool is_twist_of(const SimulatedBody& body, const edit::SetState::OfBody& set) {
+  const auto is_same = [](const std::optional<Vector3>& given, const Vector3& own) {
+    return !given || (*given - own).norm() <= same_pose;
+  };
+  return is_same(set.velocity, body.velocity) && is_same(set.angular_velocity, body.angular_velocity);
+}
+
 void check_body(const edit::SetState::OfBody& set, const State& state, Problems& problems) {
   const std::string other = not_free(set.body, state);
+  const SimulatedBody& body = state.bodies[set.body];
   if (!state.body_progress[set.body].is_placed) problems.add("pose: the body does not exist until what holds it is known");
-  if (!other.empty()) problems.add("pose: of a body " + other + "; allowed: of bodies that nothing but cables holds");
+  const auto refuse = [&](const std::string& what) {
+    problems.add(what + ": of a body " + other + "; allowed: of bodies that nothing but cables holds, or the one that it has");
+  };
+  if (!other.empty() && set.pose && !is_pose_of(body, *set.pose)) refuse("pose");
+  if (!other.empty() && !is_twist_of(body, set)) refuse("twist");
   if (set.pose) {
     const std::string problem = pose_problem("pose", *set.pose);
     if (!problem.empty()) problems.add(problem);
@@ -93,16 +118,21 @@ void hold_where_bodies_are(int index, State& state) {
     if (boundary.directions[k].body >= 0) targets.directions[k].orientation = targets.directions[k].next_orientation;
 }
 
-/// Whether what holds a cable is no further apart than it is long, and elastic ones a little more.
-bool reaches(int index, const State& state) {
-  const SimulatedCable& cable = state.cables[index];
-  const double strain = CableMaterials(cable).any_rigid() ? most_strain : most_elastic_strain;
+/// Of the span between two of what holds a cable that is stretched most.
+double largest_strain_of_spans(int index, const State& state) {
   const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
+  double strain = -1;
   for (std::size_t k = 1; k < held.size(); ++k) {
-    const double length = cable.state.length(held[k - 1].node, held[k].node);
-    if ((held[k].position - held[k - 1].position).norm() > (1 + strain) * length) return false;
+    const double length = state.cables[index].state.length(held[k - 1].node, held[k].node);
+    strain = std::max(strain, (held[k].position - held[k - 1].position).norm() / length - 1);
   }
-  return true;
+  return strain;
+}
+
+/// To which a cable may be stretched by what is set: as what begins, and as it is stretched already.
+double allowed_strain(int index, const State& before) {
+  const double begins = CableMaterials(before.cables[index]).any_rigid() ? most_strain : most_elastic_strain;
+  return std::max(begins, largest_strain_of_spans(index, before)) + strain_rounding;
 }
 
 /// Of what cannot stretch. A segment on a wheel is held at both of its nodes.
@@ -149,8 +179,39 @@ bool put_at(std::vector<Vector3> positions, int index, State& state) {
   return found;
 }
 
-/// False if a node that is held, or bears something, is in the way, or if the cable does not follow.
-bool let_through(const edit::SetState::OfGuide& set, State& state) {
+/// Of the cables that bodies or guides change; by their index.
+std::vector<std::optional<SpanShapes>> shapes_to_follow(const edit::SetState& set, const std::vector<char>& is_changed,
+                                                        const State& state) {
+  std::vector<std::optional<SpanShapes>> shapes(is_changed.size());
+  if (set.bodies.empty() && set.guides.empty()) return shapes;
+  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+    const std::vector<HeldNode> held = boundary_now(state.cable_progress[c].targets).nodes;
+    if (is_changed[c] && !held.empty()) shapes[c].emplace(held, state.cables[c].state);
+  }
+  return shapes;
+}
+
+/// Puts a cable where its shapes go between what holds it now.
+void put_between(const SpanShapes& shapes, int index, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  shapes.apply(*cable.model, boundary_now(state.cable_progress[index].targets).nodes, gravity_near(state, index), cable.state);
+}
+
+/// With the lengths that it has between its holders, and no further strained than is `allowed`: near where it is, or hanging.
+bool fits(double allowed, int index, State& state) {
+  if (largest_strain_of_spans(index, state) > allowed) return false;
+  if (put_at(state.cables[index].state.positions, index, state)) return true;
+  SimulatedCable& cable = state.cables[index];
+  const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
+  hang_anew(*cable.model, held, gravity_near(state, index), cable.state);
+  return has_lengths(held, cable);
+}
+
+/// False if a node that is held, or bears something, is in the way.
+bool let_through(const edit::SetState::OfGuide& set, const SpanShapes& shapes, State& state) {
+  const Attachment& guided = *attachment_of_guide(set.guide, state);
+  const double rounding = rounding_of_lengths * state.cables[guided.body.index].model->segment_length;
+  if (std::abs(set.arc_length - arc_length_at(guided, state.cables[guided.body.index].state)) <= rounding) return true;
   SimulatedGuide& guide = state.guides[set.guide];
   guide.flow = guide.flow_acceleration = guide.held_energy = guide.held_way = guide.last_way = 0;
   while (true) {
@@ -164,9 +225,10 @@ bool let_through(const edit::SetState::OfGuide& set, State& state) {
     before += part;
     after -= part;
     const double little = 0.01 * state.cables[index].model->segment_length;
+    lay_straight(boundary_now(state.cable_progress[index].targets).nodes, cable);
     const bool passes = pass_nodes(index, false, state);
-    const bool found = put_at(cable.positions, index, state);  // on the way there one side may be too short
-    if (part == missing) return found && reaches(index, state);
+    put_between(shapes, index, state);
+    if (part == missing) return true;
     if (!passes && std::abs(part) < little) return false;
   }
 }
@@ -186,6 +248,7 @@ EditResult World::Implementation::apply(const edit::SetState& set) {
       return refused("body: " + std::to_string(of.body) + "; must be the index of a body that is no junction");
     problems.of(state.bodies[of.body].name);
     check_body(of, state, problems);
+    if (!not_free(of.body, state).empty()) continue;  // it is where it was
     for (const Attachment& a : state.attachments)
       if (a.holder == of.body && a.body.is_cable()) is_changed[a.body.index] = 1;
   }
@@ -214,7 +277,12 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
     state = before;
     return refused(message);
   };
+  std::vector<double> allowed(state.cables.size());
+  for (std::size_t c = 0; c < allowed.size(); ++c)
+    if (is_changed[c]) allowed[c] = allowed_strain(static_cast<int>(c), before);
+  const std::vector<std::optional<SpanShapes>> shapes = shapes_to_follow(set, is_changed, before);
   for (const edit::SetState::OfBody& of : set.bodies) {
+    if (!not_free(of.body, state).empty()) continue;
     SimulatedBody& body = state.bodies[of.body];
     BodyProgress& progress = state.body_progress[of.body];
     if (of.pose) {
@@ -232,15 +300,20 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
     if (!is_changed[c]) continue;
     const int index = static_cast<int>(c);
     hold_where_bodies_are(index, state);
-    if (set.bodies.empty()) continue;
-    SimulatedCable& cable = state.cables[c];
-    carry_with_targets(*cable.model, boundary_now(state.cable_progress[c].targets).nodes, gravity_near(state, index),
-                       cable.state);
+    if (shapes[c]) put_between(*shapes[c], index, state);
   }
   for (const edit::SetState::OfGuide& of : set.guides)
-    if (!let_through(of, state))
+    if (!let_through(of, *shapes[attachment_of_guide(of.guide, state)->body.index], state))
       return refuse("arc_length: " + number_text(of.arc_length) + "; the cable of " + state.guides[of.guide].name +
-                    " cannot go through as far: something that it bears or that holds it is in the way, or it is straight");
+                    " cannot go through as far: something that it bears or that holds it is in the way");
+  // With the states of all that hold them.
+  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+    if (!shapes[c] || fits(allowed[c], static_cast<int>(c), state)) continue;
+    const std::string& name = state.cables[c].model->name;
+    if (!set.bodies.empty()) return refuse("pose: too far for the cable " + name + "; allowed: where all that hold it reach");
+    return refuse("arc_length: too little of the cable " + name +
+                  " between what holds it; allowed: where all that hold it reach");
+  }
   for (const edit::SetState::OfCable& of : set.cables) {
     SimulatedCable& cable = state.cables[of.cable];
     Problems problems;
@@ -259,8 +332,6 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
   for (std::size_t c = 0; c < is_changed.size(); ++c) {
     if (!is_changed[c]) continue;
     const int index = static_cast<int>(c);
-    if (!set.bodies.empty() && (!put_at(state.cables[c].state.positions, index, state) || !reaches(index, state)))
-      return refuse("pose: too far for the cable " + state.cables[c].model->name + "; allowed: where all that hold it reach");
     // What the steps before have found is of another motion.
     CableState& cable = state.cables[c].state;
     for (std::vector<double>* forces : {&cable.tension, &cable.last_tension, &cable.axial_multiplier})

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace verlet_cable {
 namespace {
@@ -42,16 +41,13 @@ void check_shape(const std::string& prefix, const ShapeDesc& shape, Errors& erro
   if (!shape.mesh) errors.add(prefix + "uri", quoted(shape.uri), "a mesh file that could be read");
 }
 
-void check_obstacles(const SceneDesc& scene, Errors& errors) {
+void check_obstacles(const SceneDesc& scene, UniqueNames names, Errors& errors) {
   if (scene.obstacles.size() > most_obstacles)
     errors.add("obstacles", std::to_string(scene.obstacles.size()) + " obstacles", "at most " + std::to_string(most_obstacles));
-  UniqueNames names;
-  std::set<std::string> taken;
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const std::string key = indexed("obstacles", i);
     names.check(key + ".name", scene.obstacles[i].name, errors);
     check_obstacle(key, scene.obstacles[i], errors);
-    taken.insert(scene.obstacles[i].name);
   }
   if (scene.contact) check_fields("contact.", contact_fields, *scene.contact, errors);
   if (!scene.robot) return;
@@ -59,9 +55,8 @@ void check_obstacles(const SceneDesc& scene, Errors& errors) {
   for (const LinkDesc& link : scene.robot->tree) {
     check_numbers("robot." + escaped(link.name) + ".origin", link.origin, coordinate, "m, rad", errors);
     for (const ObstacleDesc& obstacle : link.obstacles) {
-      // Links are named by the robot's makers: any name that is not another obstacle's.
       const std::string key = "robot." + escaped(obstacle.name);
-      if (!taken.insert(obstacle.name).second) errors.add(key, "used twice", "a name that no other obstacle has");
+      names.claim(key, obstacle.name, errors);  // any letters: links are named by the robot's makers
       check_obstacle(key, obstacle, errors);
     }
   }

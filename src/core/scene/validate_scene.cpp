@@ -371,12 +371,13 @@ std::vector<std::string> validate(const SceneDesc& scene) {
   check_particles(scene, names, errors);
   check_nets(scene, names, attachments, errors);
   check_bodies(scene, scene_names, names, attachments, errors);
+  const UniqueNames names_of_touching = names;
   check_junctions(scene, scene_names, errors);
   check_guides(scene, scene_names, names, errors);
   check_integrator(scene, errors);
   check_size(scene, errors);
 
-  check_obstacles(scene, errors);
+  check_obstacles(scene, names_of_touching, errors);
   check_initial_poses(scene, errors);
   check_broadcast(scene, scene_names, errors);
   std::vector<std::string> lines = errors.take();

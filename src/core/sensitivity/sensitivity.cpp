@@ -28,10 +28,6 @@ constexpr std::array<NamedKind, 5> of_materials{{{"axial_stiffness", Kind::axial
                                                  {"bending_damping", Kind::bending_damping, &MaterialDesc::bending_damping},
                                                  {"drag", Kind::drag, &MaterialDesc::drag},
                                                  {"linear_density", Kind::linear_density, &MaterialDesc::linear_density}}};
-constexpr const char* allowed_parameters =
-    "KEY:CABLE with a key axial_stiffness, axial_damping, bending_stiffness, bending_damping, drag or linear_density; "
-    "length:CABLE, pose:FRAME, gravity";
-
 /// Reads names of parameters.
 class ParameterReader {
  public:
@@ -44,13 +40,13 @@ class ParameterReader {
       return;
     }
     const std::size_t colon = text.find(':');
-    if (colon == std::string::npos) return refuse(allowed_parameters);
+    if (colon == std::string::npos) return refuse(Sensitivity::parameter_words);
     const std::string key = text.substr(0, colon), name = text.substr(colon + 1);
     if (key == "pose") return read_pose(name, columns);
     const auto material =
         std::find_if(of_materials.begin(), of_materials.end(), [&](const NamedKind& k) { return key == k.name; });
     const bool bends = key == "bending_stiffness", is_length = key == "length";
-    if (material == of_materials.end() && !bends && !is_length) return refuse(allowed_parameters);
+    if (material == of_materials.end() && !bends && !is_length) return refuse(Sensitivity::parameter_words);
     const int cable = find(state_.cables, name);
     if (cable < 0) {
       NameList names;
@@ -132,6 +128,10 @@ bool depends_on(int cable, const SensitivityColumn& column, const State& state) 
 
 }  // namespace
 
+const char* const Sensitivity::parameter_words =
+    "KEY:CABLE with a key axial_stiffness, axial_damping, bending_stiffness, bending_damping, drag or linear_density; "
+    "length:CABLE, pose:FRAME, gravity";
+
 Sensitivity::Sensitivity(const World& world, const std::vector<std::string>& parameters, Start start)
     : implementation_(std::make_unique<Implementation>()) {
   const State& state = world.implementation_->state;
@@ -140,7 +140,7 @@ Sensitivity::Sensitivity(const World& world, const std::vector<std::string>& par
   for (const SimulatedCable& cable : state.cables) own.models.push_back(cable.model);
   ParameterReader reader(state, start == Start::settled);
   for (const std::string& parameter : parameters) reader.read(parameter, own.columns);
-  if (parameters.empty()) reader.errors.push_back(std::string("parameters: none; allowed: ") + allowed_parameters);
+  if (parameters.empty()) reader.errors.push_back(std::string("parameters: none; allowed: ") + parameter_words);
   for (int cable = 0; cable < static_cast<int>(state.cables.size()); ++cable) {
     const bool depends = std::any_of(own.columns.begin(), own.columns.end(),
                                      [&](const SensitivityColumn& column) { return depends_on(cable, column, state); });

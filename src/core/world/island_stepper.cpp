@@ -32,6 +32,24 @@ bool cannot_get_apart(const Touch& touch) {
   return should_have_moved && touch.normal.dot(touch.displacement) < least_separation * touch.radius;
 }
 
+bool are_of_same(const Intrusion& a, const Intrusion& b) {
+  return a.cable == b.cable && a.obstacle == b.obstacle;
+}
+bool are_of_same(const BodyIntrusion& a, const BodyIntrusion& b) {
+  return a.body == b.body && a.obstacle == b.obstacle;
+}
+
+/// Of what is inside of what, the deepest.
+template <class Found>
+void note_deepest(const Found& found, std::vector<Found>& noted) {
+  const auto same = std::find_if(noted.begin(), noted.end(), [&](const Found& other) { return are_of_same(other, found); });
+  if (same == noted.end()) {
+    noted.push_back(found);
+  } else if (same->depth < found.depth) {
+    *same = found;
+  }
+}
+
 /// The segment of a cable that breaks now, -1 if it holds. A piece keeps at least one segment, so that the outermost ones do not
 /// break.
 int find_breaking_segment(const SimulatedCable& cable, const StepResult& result) {
@@ -264,6 +282,7 @@ IslandStepper::IslandStepper(State& state, Workspace& workspace, std::vector<Cab
 
 void IslandStepper::step(Island& island, IslandOutcome& found) {
   found.intrusions.clear();
+  found.body_intrusions.clear();
   found.contacts.clear();
   found.jumps.clear();
   found.bodies = {};
@@ -482,16 +501,7 @@ void IslandStepper::take_back(const Island& island) {
 }
 
 void IslandStepper::note_intrusions(std::vector<Intrusion>& noted) const {
-  for (const Intrusion& found : workspace_.contacts.intrusions()) {
-    const auto same = std::find_if(noted.begin(), noted.end(), [&](const Intrusion& other) {
-      return other.cable == found.cable && other.obstacle == found.obstacle;
-    });
-    if (same == noted.end()) {
-      noted.push_back(found);
-    } else if (same->depth < found.depth) {
-      *same = found;
-    }
-  }
+  for (const Intrusion& found : workspace_.contacts.intrusions()) note_deepest(found, noted);
 }
 
 void IslandStepper::complete(const Island& island, const StepProgress& progress, IslandOutcome& found) {
@@ -501,7 +511,7 @@ void IslandStepper::complete(const Island& island, const StepProgress& progress,
   }
   for (const int body : island.bodies) found.change += follow_energy_of_body(body, state_);
   for (const Touch& touch : workspace_.body_system.contacts().touches())
-    if (is_pushed_out(touch)) note_status(Status::inside_obstacle, rigid_body_id(touch.body), 0, found.bodies);
+    if (is_pushed_out(touch)) note_deepest(BodyIntrusion{touch.body, touch.obstacle, touch.inside_depth}, found.body_intrusions);
   for (const Touch& touch : workspace_.contacts.touches()) {
     if (touch.mode == Touch::Mode::open) continue;
     if (cannot_get_apart(touch))

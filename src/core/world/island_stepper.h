@@ -23,9 +23,10 @@ struct CableOutcome {
 
 /// What a step of an island finds.
 struct IslandOutcome {
-  StepResult bodies;                  ///< status and first body that is not ok
-  std::vector<Jump> jumps;            ///< of what holds bodies, that the step found to be over
-  std::vector<Intrusion> intrusions;  ///< the deepest of each cable and obstacle
+  StepResult bodies;                           ///< status and first body that is not ok
+  std::vector<Jump> jumps;                     ///< of what holds bodies, that the step found to be over
+  std::vector<Intrusion> intrusions;           ///< the deepest of each cable and obstacle
+  std::vector<BodyIntrusion> body_intrusions;  ///< of each body and obstacle
   StepContacts contacts;
   std::optional<StepProgress> unfinished;  ///< what is left waits for `resume`
   bool exhausted = false;                  ///< the step took more work than it may

@@ -1,6 +1,7 @@
 #include "world/state_bytes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
@@ -127,35 +128,73 @@ bool is_sound(const SimulatedContact& contact, bool by_body, const State& state)
          contact.position.allFinite() && contact.normal.allFinite() && contact.force.allFinite() && contact.torque.allFinite();
 }
 
+bool is_index(int index, std::size_t count) {
+  return index >= 0 && index < static_cast<int>(count);
+}
+
+bool is_sound(const Intrusion& found, const State& state) {
+  return is_index(found.cable, state.cables.size()) &&
+         is_index(found.segment, state.cables[found.cable].state.rest_lengths.size()) &&
+         is_index(found.obstacle, state.obstacles.size()) && std::isfinite(found.depth);
+}
+
+bool is_sound(const BodyIntrusion& found, const State& state) {
+  return is_index(found.body, state.bodies.size()) && is_index(found.obstacle, state.obstacles.size()) &&
+         std::isfinite(found.depth);
+}
+
+bool is_sound(const StatusFinding& found, const State& state) {
+  const bool is_known = found.status > StepResult::Status::ok && found.status <= StepResult::Status::fault;
+  const auto is_one = [&](BodyId::Kind kind, std::size_t count) {
+    return found.body.kind == kind && is_index(found.body.index, count);
+  };
+  return is_known && std::isfinite(found.max_strain) &&
+         (is_one(BodyId::Kind::cable, state.cables.size()) || is_one(BodyId::Kind::net, state.nets.size()) ||
+          is_one(BodyId::Kind::particle, state.particles.size()) || is_one(BodyId::Kind::rigid_body, state.bodies.size()));
+}
+
+template <class Found, class... More>
+void erase_unsound(std::vector<Found>& all, const More&... more) {
+  const auto is_wrong = [&](const Found& found) { return !is_sound(found, more...); };
+  all.erase(std::remove_if(all.begin(), all.end(), is_wrong), all.end());
+}
+
+/// Those that are no events, but hold on until the next step.
+template <class AnyFindings>
+auto lasting(AnyFindings& findings) {
+  return std::tie(findings.unsettled, findings.misfits, findings.unreached, findings.statuses, findings.intrusions,
+                  findings.body_intrusions, findings.contacts, findings.body_contacts);
+}
+
 }  // namespace
 
-std::string bytes_of(const State& state, const Findings& findings) {
+std::string bytes_of(const State& state, const Findings& findings, std::size_t told_unsettled) {
   ByteWriter bytes;
   bytes(hash(state));
-  visit(findings.contacts, bytes);
-  visit(findings.body_contacts, bytes);
+  std::apply([&](const auto&... found) { (visit(found, bytes), ...); }, lasting(findings));
+  bytes(told_unsettled);
   visit(state, bytes);
   return bytes.take();
 }
 
-void restore(std::string_view text, State& state, Findings& findings) {
+void restore(std::string_view text, State& state, Findings& findings, std::size_t& told_unsettled) {
   ByteReader bytes(text);
   std::uint64_t expected = 0;
   bytes(expected);
   StateReader reader(bytes, meshes_of(state));
   findings = {};
-  reader.read(findings.contacts);
-  reader.read(findings.body_contacts);
+  std::apply([&](auto&... found) { (reader.read(found), ...); }, lasting(findings));
+  bytes(told_unsettled);
   reader.read(state);
   if (!bytes.is_at_end()) throw std::invalid_argument("there are more than a state has");
   if (hash(state) != expected) throw std::invalid_argument("they are damaged, or of another version");
   // The hash does not cover them.
-  for (auto* contacts : {&findings.contacts, &findings.body_contacts}) {
-    const auto is_wrong = [&](const SimulatedContact& contact) {
-      return !is_sound(contact, contacts == &findings.body_contacts, state);
-    };
-    contacts->erase(std::remove_if(contacts->begin(), contacts->end(), is_wrong), contacts->end());
-  }
+  erase_unsound(findings.statuses, state);
+  erase_unsound(findings.intrusions, state);
+  erase_unsound(findings.body_intrusions, state);
+  erase_unsound(findings.contacts, false, state);
+  erase_unsound(findings.body_contacts, true, state);
+  told_unsettled = std::min(told_unsettled, findings.unsettled.size());
 }
 
 std::string numbers_of(const SceneDesc& scene) {

@@ -188,6 +188,19 @@ auto fields(T& x, const SimulatedContact*) {
   return std::tie(x.cable, x.segment, x.position, x.normal, x.force, x.obstacle, x.other_cable, x.other_segment, x.body, x.torque,
                   x.length, x.other_length);
 }
+/// Likewise.
+template <class T>
+auto fields(T& x, const StatusFinding*) {
+  return std::tie(x.body, x.status, x.node, x.max_strain, x.cause);
+}
+template <class T>
+auto fields(T& x, const Intrusion*) {
+  return std::tie(x.cable, x.segment, x.obstacle, x.depth);
+}
+template <class T>
+auto fields(T& x, const BodyIntrusion*) {
+  return std::tie(x.body, x.obstacle, x.depth);
+}
 template <class T>
 auto fields(T& x, const CableProgress*) {
   return std::tie(x.id, x.targets, x.spans, x.drive, x.contacts, x.level, x.energy);

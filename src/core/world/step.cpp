@@ -96,6 +96,7 @@ void World::Implementation::forget_last_step() {
   findings.ended_loads.clear();
   findings.jumps.clear();
   findings.intrusions.clear();
+  findings.body_intrusions.clear();
   findings.statuses.clear();
   findings.contacts.clear();
   findings.body_contacts.clear();
@@ -207,12 +208,15 @@ void World::Implementation::collect_outcomes(StepResult& result) {
     result.exhausted = result.exhausted || outcome.exhausted;
     append(outcome.jumps, findings.jumps);
     append(outcome.intrusions, findings.intrusions);
+    append(outcome.body_intrusions, findings.body_intrusions);
     outcome.contacts.collect(findings.contacts, findings.body_contacts);
   }
   for (const Intrusion& found : findings.intrusions) {
     const double strain = cable_outcomes.value[found.cable].result.max_strain;
     note({cable_id(found.cable), StepResult::Status::inside_obstacle, found.segment, strain}, result);
   }
+  for (const BodyIntrusion& found : findings.body_intrusions)
+    note({rigid_body_id(found.body), StepResult::Status::inside_obstacle}, result);
 }
 
 void World::Implementation::apply_breaks(StepResult& result) {

@@ -170,13 +170,12 @@ std::uint64_t World::hash() const {
 }
 
 std::string World::save() const {
-  return bytes_of(implementation_->state, findings());
+  return bytes_of(implementation_->state, findings(), implementation_->told_unsettled);
 }
 
 void World::restore(const std::string& bytes) {
   auto next = std::make_unique<Implementation>(*implementation_);
-  verlet_cable::restore(bytes, next->state, next->findings);
-  next->told_unsettled = 0;
+  verlet_cable::restore(bytes, next->state, next->findings, next->told_unsettled);
   next->name_waiting();
   implementation_ = std::move(next);
 }

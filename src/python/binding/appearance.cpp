@@ -30,6 +30,12 @@ double read_number(const std::string& name, const py::handle& value, const Range
   return number;
 }
 
+bool read_flag(const std::string& name, const py::handle& value) {
+  const bool is_flag = py::isinstance<py::bool_>(value) || py::isinstance(value, py::module_::import("numpy").attr("bool_"));
+  if (!is_flag) refuse(name, value, "True or False");
+  return py::bool_(py::reinterpret_borrow<py::object>(value));
+}
+
 std::array<double, 3> read_three(const std::string& name, const py::handle& value, const Range& range, const char* allowed) {
   const Numbers numbers = Numbers::ensure(value);
   if (!numbers) PyErr_Clear();
@@ -48,7 +54,7 @@ template <class Read>
 void read_keys(const std::string& name, const py::handle& given, const char* keys, const Read& read) {
   if (!py::isinstance<py::dict>(given)) refuse(name, given, std::string("a dict with some of the keys ") + keys);
   for (const auto& [key, value] : py::reinterpret_borrow<py::dict>(given)) {
-    const std::string text = py::str(key);
+    const std::string text = py::isinstance<py::str>(key) ? text_of(key, name) : "";
     if (!read(text, value)) refuse(name, key, std::string("the keys ") + keys);
   }
 }
@@ -63,7 +69,7 @@ view::Light read_light(const py::handle& given) {
     } else if (key == "ambient") {
       light.ambient = read_number("light.ambient", value, unit_interval, "");
     } else if (key == "shadows") {
-      light.shadows = py::bool_(py::reinterpret_borrow<py::object>(value));
+      light.shadows = read_flag("light.shadows", value);
     } else {
       return false;
     }
@@ -84,7 +90,7 @@ void read_look(const std::string& name, const py::handle& given, view::Look& loo
     } else if (key == "second_color") {
       look.second_color = read_color(full, value);
     } else if (key == "pattern") {
-      const std::string pattern = py::str(value);
+      const std::string pattern = py::isinstance<py::str>(value) ? text_of(value, full) : "";
       if (pattern == "plain")
         look.pattern = Pattern::plain;
       else if (pattern == "stripes")
@@ -94,7 +100,9 @@ void read_look(const std::string& name, const py::handle& given, view::Look& loo
       else
         refuse(full, value, "plain, stripes (cables), checks (all else)");
     } else if (key == "stripes") {
-      look.stripes = static_cast<int>(read_number(full, value, stripes_range, ""));
+      const double stripes = read_number(full, value, stripes_range, "");
+      if (stripes != std::floor(stripes)) refuse(full, value, stripes_range.text(""));
+      look.stripes = static_cast<int>(stripes);
     } else if (key == "stripe_width") {
       look.stripe_width = read_number(full, value, not_negative, "rad");
     } else if (key == "check_size") {
@@ -118,9 +126,9 @@ Appearance::Appearance(const py::dict& given) {
               } else if (key == "background") {
                 background_ = read_color("background", value);
               } else if (key == "stripes") {
-                options_.stripes = py::bool_(py::reinterpret_borrow<py::object>(value));
+                options_.stripes = read_flag("stripes", value);
               } else if (key == "distinct_colors") {
-                options_.distinct_colors = py::bool_(py::reinterpret_borrow<py::object>(value));
+                options_.distinct_colors = read_flag("distinct_colors", value);
               } else if (key == "least_radius") {
                 options_.least_radius = read_number("least_radius", value, not_negative, "m");
               } else if (key == "looks") {
@@ -128,7 +136,8 @@ Appearance::Appearance(const py::dict& given) {
                 for (const auto& [name, look] : py::reinterpret_borrow<py::dict>(value)) {
                   view::Look unused;
                   read_look("looks[" + ascii_text(name) + "]", look, unused);
-                  looks_.emplace(py::str(name), py::reinterpret_borrow<py::dict>(look));
+                  looks_.emplace(py::isinstance<py::str>(name) ? text_of(name, "looks") : ascii_text(name),
+                                 py::reinterpret_borrow<py::dict>(look));
                 }
               } else {
                 return false;

@@ -205,11 +205,14 @@ std::shared_ptr<PythonBatch> copy(const PythonBatch& batch) {
 }
 
 py::tuple pickled(const PythonBatch& batch) {
-  py::list worlds;
-  for (std::size_t i = 0; i < use(batch).size(); ++i) worlds.append(py::bytes(batch.batch[i].save()));
+  py::list worlds, events;
+  for (std::size_t i = 0; i < use(batch).size(); ++i) {
+    worlds.append(py::bytes(batch.batch[i].save()));
+    events.append(py::bytes(batch.batch.events(i).save()));
+  }
   std::vector<int> status;
   for (const StepResult::Status one : batch.batch.status()) status.push_back(static_cast<int>(one));
-  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds, batch.batch.errors(), status);
+  return py::make_tuple(parts_of(batch.scene), batch.threads, worlds, batch.batch.errors(), status, events);
 }
 
 std::shared_ptr<PythonBatch> unpickled(const py::tuple& parts) {
@@ -219,8 +222,11 @@ std::shared_ptr<PythonBatch> unpickled(const py::tuple& parts) {
   std::vector<StepResult::Status> status;
   for (const int number : parts[4].cast<std::vector<int>>()) status.push_back(static_cast<StepResult::Status>(number));
   const int threads = parts[1].cast<int>();
-  return std::make_shared<PythonBatch>(
+  auto batch = std::make_shared<PythonBatch>(
       std::move(scene), threads, Batch(std::move(worlds), parts[3].cast<std::vector<std::string>>(), std::move(status), threads));
+  const auto events = parts[5].cast<std::vector<py::bytes>>();
+  for (std::size_t i = 0; i < events.size(); ++i) batch->batch.events(i) = EventRecord(std::string(events[i]));
+  return batch;
 }
 
 py::array_t<bool> settle(PythonBatch& batch) {

@@ -317,9 +317,11 @@ void add_edit_methods(py::module_& module, py::class_<PythonWorld>& world, World
       "Puts a cable, a body or a guide, by its name, elsewhere, or gives it another velocity. What is not given stays.\n\n"
       "positions, velocities: (n + 1, 3) [m], [m/s] of the nodes of a cable. They are projected as those of a scene are: held "
       "nodes stay where their holders are, and what cannot stretch keeps its length.\npose, twist: (7,) x, y, z [m], qx, qy, qz, "
-      "qw of a body that only cables hold, and (6,) [m/s], [rad/s] as body_twist(). Its cables go with it; what of the velocity "
-      "they do not allow, the next step takes away.\narc_length: [m] at rest from the start of the cable to what is in a guide; "
-      "material goes through it, and nodes with it.\n\nRaises ValueError, also where no shape near the positions has the "
+      "qw of a body that only cables hold (of another one, that which it has), and (6,) [m/s], [rad/s] as body_twist(). Its "
+      "cables go with it; what of the velocity they do not allow, the next step takes away.\narc_length: [m] at rest from the "
+      "start of the cable to what is in a guide; material goes through it, and nodes with it.\nStretches of cable between what "
+      "holds them keep their shapes, deeper or flatter as far as their lengths ask for it.\n\nRaises ValueError, also where no "
+      "shape near the positions has the "
       "cable's lengths, or the polyline through them is more than 5 % off the cable's length at rest and as it is strained now, "
       "and KeyError; then nothing is changed.");
   methods.add_edit(

@@ -24,70 +24,84 @@ constexpr const char* allowed_outputs = "positions:CABLE, velocities:CABLE, tens
 
 /// Derivatives of one output: `rows` numbers of it, the derivatives of each side by side.
 struct Output {
+  std::string text, key;           ///< 'positions:hose', 'positions'
+  int attachment = -1;             ///< of a wrench
   std::vector<py::ssize_t> shape;  ///< of the output itself
   int cable = -1;                  ///< that it is of; -1: a body or net
   std::vector<double> derivatives;
 };
 
-std::vector<std::string> texts_of(const py::object& given, const char* argument) {
+/// `words`: what each of them may be.
+std::vector<std::string> texts_of(const py::object& given, const char* argument, const char* words) {
   std::vector<std::string> texts;
   if (py::isinstance<py::str>(given)) {
     texts.push_back(text_of(given, argument));
     return texts;
   }
+  const auto refuse = [&](const py::handle& wrong) {
+    throw py::type_error(std::string(argument) + ": " + ascii_text(wrong) + "; allowed: a text, or a list of texts: " + words);
+  };
+  if (!py::isinstance<py::list>(given) && !py::isinstance<py::tuple>(given)) refuse(given);
   for (const py::handle text : given) {
-    if (!py::isinstance<py::str>(text))
-      throw py::type_error(std::string(argument) + ": " + ascii_text(text) + "; allowed: texts");
+    if (!py::isinstance<py::str>(text)) refuse(text);
     texts.push_back(text_of(text, argument));
   }
   return texts;
 }
 
-Output read_output(const World& world, const Sensitivity& sensitivity, const std::string& text) {
+/// An output by its name: what is to be read, but no derivatives.
+Output find_output(const World& world, const std::string& text) {
   const std::size_t colon = text.find(':');
-  const std::string key = text.substr(0, colon), name = colon == std::string::npos ? "" : text.substr(colon + 1);
-  const auto refuse = [&](const std::string& allowed) {
-    throw py::value_error("outputs: " + quoted(text) + "; allowed: " + allowed);
-  };
-  const bool is_wrench = key == "wrench";
-  if (colon == std::string::npos || (!is_wrench && key != "positions" && key != "velocities" && key != "tension"))
-    refuse(allowed_outputs);
   Output output;
+  output.text = text;
+  output.key = text.substr(0, colon);
+  const std::string name = colon == std::string::npos ? "" : text.substr(colon + 1);
+  const auto refuse = [&](const std::string& allowed) {
+    throw std::invalid_argument("outputs: " + quoted(text) + "; allowed: " + allowed);
+  };
+  const bool is_wrench = output.key == "wrench";
+  if (colon == std::string::npos ||
+      (!is_wrench && output.key != "positions" && output.key != "velocities" && output.key != "tension"))
+    refuse(allowed_outputs);
   NameList names;
-  const int attachment = is_wrench ? find(world.attachments(), name) : -1;
   if (is_wrench) {
+    output.attachment = find(world.attachments(), name);
     for (const Attachment& other : world.attachments())
       if (is_named(other) && other.body.is_cable()) names.add(other.name);
-    if (attachment < 0 || !is_named(world.attachments()[attachment]) || !world.attachments()[attachment].body.is_cable())
+    if (output.attachment < 0 || !is_named(world.attachments()[output.attachment]) ||
+        !world.attachments()[output.attachment].body.is_cable())
       refuse("attachments of cables: " + names.text("none, there is none"));
-    output.cable = world.attachments()[attachment].body.index;
+    output.cable = world.attachments()[output.attachment].body.index;
     output.shape = {6};
   } else {
     for (const SimulatedCable& cable : world.cables()) names.add(cable.model->name);
     output.cable = find(world.cables(), name);
     if (output.cable < 0) refuse("cables: " + names.text("none, there is none"));
     const CableState& state = world.cables()[output.cable].state;
-    if (key == "tension")
+    if (output.key == "tension")
       output.shape = {state.segments()};
     else
       output.shape = {state.nodes(), 3};
   }
+  return output;
+}
+
+void read(const World& world, const Sensitivity& sensitivity, Output& output) {
   if (const std::string lost = sensitivity.lost(world, output.cable); !lost.empty())
-    throw py::value_error("outputs: " + quoted(text) + " has no derivatives any longer, " + lost +
+    throw py::value_error("outputs: " + quoted(output.text) + " has no derivatives any longer, " + lost +
                           "; allowed: cables of which derivatives are followed, as anew after another track_sensitivity()");
   std::size_t size = static_cast<std::size_t>(sensitivity.columns());
   for (const py::ssize_t length : output.shape) size *= static_cast<std::size_t>(length);
   output.derivatives.resize(size);
   double* const to = output.derivatives.data();
-  if (is_wrench)
-    sensitivity.read_wrench(world, attachment, to);
-  else if (key == "positions")
+  if (output.key == "wrench")
+    sensitivity.read_wrench(world, output.attachment, to);
+  else if (output.key == "positions")
     sensitivity.read_positions(world, output.cable, to);
-  else if (key == "velocities")
+  else if (output.key == "velocities")
     sensitivity.read_velocities(world, output.cable, to);
   else
     sensitivity.read_tension(world, output.cable, to);
-  return output;
 }
 
 int columns_of(const std::string& parameter) {
@@ -137,7 +151,7 @@ void track(PythonWorld& self, const py::object& parameters, const py::str& start
   const std::string from = text_of(start, "start");
   if (from != "settled" && from != "given") throw py::value_error("start: " + quoted(from) + "; allowed: 'settled', 'given'");
   self.driven().require_placed_frames();
-  *tracked = Sensitivity(self.world(), texts_of(parameters, "parameters"),
+  *tracked = Sensitivity(self.world(), texts_of(parameters, "parameters", Sensitivity::parameter_words),
                          from == "settled" ? Sensitivity::Start::settled : Sensitivity::Start::given);
 }
 
@@ -145,19 +159,36 @@ py::object sensitivity(PythonWorld& self, const py::object& outputs, const py::o
   const World& world = self.world();
   const std::optional<Sensitivity>* const tracked = self.tracked();
   const bool is_tracked = tracked != nullptr && tracked->has_value();
+  const std::vector<std::string> asked = texts_of(outputs, "outputs", allowed_outputs);
   std::vector<std::string> wanted;
-  if (!parameters.is_none()) wanted = texts_of(parameters, "parameters");
-  if (!is_tracked && parameters.is_none())
-    throw py::value_error("parameters: None; allowed: parameters, or none after track_sensitivity()");
+  if (!parameters.is_none()) wanted = texts_of(parameters, "parameters", Sensitivity::parameter_words);
+  std::vector<Output> read_ones;
   std::optional<Sensitivity> of_equilibrium;
-  if (!is_tracked) of_equilibrium.emplace(world, wanted, Sensitivity::Start::settled);
+  std::string errors;  // one a line, of both arguments
+  const auto attempt = [&](const auto& act) {
+    try {
+      act();
+    } catch (const std::invalid_argument& error) {
+      errors += (errors.empty() ? "" : "\n") + std::string(error.what());
+    }
+  };
+  if (asked.empty()) errors = std::string("outputs: []; allowed: ") + allowed_outputs;
+  for (const std::string& text : asked) attempt([&] { read_ones.push_back(find_output(world, text)); });
+  if (!is_tracked)
+    attempt([&] {
+      if (parameters.is_none())
+        throw std::invalid_argument(std::string("parameters: None; allowed: ") + Sensitivity::parameter_words +
+                                    "; or none after track_sensitivity()");
+      of_equilibrium.emplace(world, wanted, Sensitivity::Start::settled);
+    });
+  if (!errors.empty()) throw py::value_error(errors);
   const Sensitivity& found = is_tracked ? **tracked : *of_equilibrium;
   const auto all = static_cast<std::size_t>(found.columns());
   const std::vector<std::size_t> columns = chosen_columns(found, parameters.is_none() ? found.parameters() : wanted);
-  if (py::isinstance<py::str>(outputs)) return array_of(read_output(world, found, text_of(outputs, "outputs")), all, columns);
+  for (Output& output : read_ones) read(world, found, output);
+  if (py::isinstance<py::str>(outputs)) return array_of(read_ones.front(), all, columns);
   py::dict arrays;
-  for (const std::string& text : texts_of(outputs, "outputs"))
-    arrays[py::str(text)] = array_of(read_output(world, found, text), all, columns);
+  for (const Output& output : read_ones) arrays[py::str(output.text)] = array_of(output, all, columns);
   return std::move(arrays);
 }
 

@@ -73,7 +73,20 @@ std::unique_ptr<PythonWorld> load(const PythonScene& scene, const py::buffer& da
   if (!copied) throw py::error_already_set();
   const std::string bytes = copied;
   const py::gil_scoped_release release;
-  return own_world(scene, DrivenWorld::load(*scene.desc, bytes));
+  std::unique_ptr<PythonWorld> world = own_world(scene, DrivenWorld::load(*scene.desc, bytes));
+  world->events().observe_restored(world->driven().world());
+  return world;
+}
+
+/// With the events that were not retrieved yet, as a copy has them.
+py::tuple pickled(PythonWorld& world) {
+  return py::make_tuple(parts_of(world.scene()), saved(world), py::bytes(world.events().save()));
+}
+
+std::unique_ptr<PythonWorld> unpickled(const py::tuple& parts) {
+  std::unique_ptr<PythonWorld> world = load(scene_of_parts(parts[0]), py::bytes(parts[1]));
+  world->events() = EventRecord(parts[2].cast<std::string>());
+  return world;
 }
 
 const char* step(PythonWorld& world, std::int64_t steps) {
@@ -211,8 +224,7 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
                   "nets and the "
                   "materials then have those of the bytes. Names, types, numbers of segments, and the time step must be the "
                   "same.\n\nRaises ValueError that says what is wrong with the bytes, or how the scenes differ.")
-      .def(py::pickle([](PythonWorld& world) { return py::make_tuple(parts_of(world.scene()), saved(world)); },
-                      [](const py::tuple& parts) { return load(scene_of_parts(parts[0]), py::bytes(parts[1])); }))
+      .def(py::pickle(&pickled, &unpickled))
       .def("__reduce_ex__", reduce, py::arg("protocol"))
       .def_property_readonly(
           "scene", [](PythonWorld& world) { return world.scene(); },

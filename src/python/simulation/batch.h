@@ -51,6 +51,7 @@ class Batch {
   void note_change_of(std::size_t index);
   /// What has happened to a world since it began or was replaced.
   EventRecord& events(std::size_t index) { return events_[index]; }
+  const EventRecord& events(std::size_t index) const { return events_[index]; }
 
   /// What is wrong with the scene of each world, empty where nothing is. Others are not stepped, and their status is fault.
   const std::vector<std::string>& errors() const { return errors_; }

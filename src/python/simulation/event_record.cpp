@@ -10,7 +10,52 @@ constexpr std::size_t most_events = 1000;
 /// [s] of a frame's jumps no more than one is told.
 constexpr double jump_quiet_time = 1;
 
+void write_event(const TimedEvent& event, ByteWriter& bytes) {
+  bytes(event.time);
+  bytes(event.subject.node);
+  const EventSubject& subject = event.subject;
+  for (const std::string* text : {&event.type, &subject.cable, &subject.attachment, &subject.other, &event.message})
+    bytes.write_text(*text);
+}
+
+TimedEvent read_event(ByteReader& bytes) {
+  TimedEvent event;
+  bytes(event.time);
+  bytes(event.subject.node);
+  EventSubject& subject = event.subject;
+  for (std::string* text : {&event.type, &subject.cable, &subject.attachment, &subject.other, &event.message})
+    *text = bytes.read_text();
+  return event;
+}
+
 }  // namespace
+
+EventRecord::EventRecord(const std::string& data) {
+  ByteReader bytes(data);
+  for (std::size_t left = bytes.read_length(); left > 0; --left) taken_.events.push_back(read_event(bytes));
+  bytes(taken_.left_out);
+  bytes(taken_.last_time);
+  for (std::size_t left = bytes.read_length(); left > 0; --left) {
+    std::string frame = bytes.read_text();
+    bytes(jumps_[std::move(frame)]);
+  }
+  statuses_ = StatusLog(bytes);
+}
+
+std::string EventRecord::save() const {
+  ByteWriter bytes;
+  bytes(taken_.events.size());
+  for (const TimedEvent& event : taken_.events) write_event(event, bytes);
+  bytes(taken_.left_out);
+  bytes(taken_.last_time);
+  bytes(jumps_.size());
+  for (const auto& [frame, time] : jumps_) {
+    bytes.write_text(frame);
+    bytes(time);
+  }
+  statuses_.write(bytes);
+  return bytes.take();
+}
 
 void EventRecord::add(TimedEvent event) {
   if (taken_.events.size() < most_events) {
@@ -25,9 +70,19 @@ void EventRecord::add(double time, const WorldEvent& event) {
   add({time, name_of(event.type), event.subject, event.message});
 }
 
-void EventRecord::observe_start(const World& world) {
+void EventRecord::add_misfits(const World& world) {
   for (const std::string& cable : world.findings().misfits)
     if (world.steps() == 0) add({world.time(), "not_fitted", {cable, {}, 0, {}}, misfit_text});
+}
+
+void EventRecord::observe_restored(const World& world) {
+  add_misfits(world);
+  statuses_.observe(world, {}, {});
+  add_statuses();
+}
+
+void EventRecord::observe_start(const World& world) {
+  add_misfits(world);
   statuses_.observe_start(world);
   add_statuses();
 }

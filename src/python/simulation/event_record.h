@@ -28,9 +28,16 @@ class EventRecord {
     double last_time = 0;  ///< [s] of the last one that was left out
   };
 
+  EventRecord() = default;
+  /// As `save` has written it. Throws std::invalid_argument.
+  explicit EventRecord(const std::string& data);
+  std::string save() const;
+
   void add(double time, const WorldEvent& event);
   /// What could not start as the scene says, or, later, found no equilibrium to settle in.
   void observe_start(const World& world);
+  /// What holds on in a world that was read from bytes.
+  void observe_restored(const World& world);
   /// After each step. `held_back`: see StatusLog; `refused_loads`: before it.
   void observe(const World& world, const StepResult& result, const std::vector<int>& held_back,
                const std::vector<RefusedLoad>& refused_loads) {
@@ -49,6 +56,7 @@ class EventRecord {
  private:
   void add(TimedEvent event);
   void add_all(const World& world);
+  void add_misfits(const World& world);
   void add_statuses();
   void add_jumps(const World& world);
 

@@ -93,7 +93,7 @@ void Diagnostics::report_simulation(Status& status) {
   status.add("max_strain", s.max_strain);                  // largest |l / l0 - 1|
   status.add("overstretched_steps", s.overstretched);      // held points were further apart than a cable or net is long
   status.add("jumped_steps", s.jumped);                    // a frame jumped, and what it holds was carried along
-  status.add("inside_obstacle_steps", s.inside_obstacle);  // a cable was inside an obstacle, and was pushed out
+  status.add("inside_obstacle_steps", s.inside_obstacle);  // a cable or body was inside an obstacle, and was pushed out
   status.add("degraded_steps", s.degraded);                // no solution was found, and velocities were set to zero
   status.add("exhausted_steps", s.exhausted);              // a step exceeded its budget of work and was cut short
   status.add("unaccounted_steps", s.unaccounted);          // energy came from nowhere, or went: the ledger did not close
@@ -127,7 +127,7 @@ void Diagnostics::report_simulation(Status& status) {
     status.mergeSummary(DiagnosticStatus::WARN, "steps took too much work, and were cut short: the time_step is too long");
   if (!simulation_.world().findings().unsettled.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "no static equilibrium was found to start from");
-  if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables were found inside obstacles");
+  if (!report.intrusions.empty()) status.mergeSummary(DiagnosticStatus::WARN, "cables or bodies were found inside obstacles");
   if (simulation_.started() && !simulation_.world().findings().waiting.empty())
     status.mergeSummary(DiagnosticStatus::WARN, "cables, nets or bodies wait for their tf frames and are not there yet");
 }

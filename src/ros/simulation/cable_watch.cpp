@@ -26,11 +26,12 @@ void CableWatch::report_events(Nanoseconds stamp, const World& world) const {
 }
 
 void CableWatch::report_statuses(const StepResult& result, Nanoseconds stamp, const World& world) {
-  for (const Intrusion& intrusion : world.findings().intrusions) {
-    if (intrusions_.size() >= most_intrusions) break;
-    intrusions_.insert(escaped(world.cables()[intrusion.cable].model->name) + " in " +
-                       escaped(world.obstacles()[intrusion.obstacle].name));
-  }
+  const auto remember = [&](const std::string& name, int obstacle) {
+    if (intrusions_.size() < most_intrusions)
+      intrusions_.insert(escaped(name) + " in " + escaped(world.obstacles()[obstacle].name));
+  };
+  for (const Intrusion& found : world.findings().intrusions) remember(world.cables()[found.cable].model->name, found.obstacle);
+  for (const BodyIntrusion& found : world.findings().body_intrusions) remember(world.bodies()[found.body].name, found.obstacle);
   statuses_.observe(world, result, {});
   if (!statuses_.is_empty()) publish(stamp, world.time());
 }

@@ -16,7 +16,7 @@ struct Statistics {
   std::int64_t exhausted = 0;        ///< of these, those that would have taken too much work
   std::int64_t overstretched = 0;    ///< steps in which held points were too far apart
   std::int64_t jumped = 0;           ///< steps in which a frame was suddenly elsewhere
-  std::int64_t inside_obstacle = 0;  ///< steps in which a cable was inside an obstacle
+  std::int64_t inside_obstacle = 0;  ///< steps in which a cable or body was inside an obstacle
   std::int64_t unaccounted = 0;      ///< steps in which energy came from nowhere, or went
 
   void add(const StepResult& result, const Findings& findings, double step_wall_time);

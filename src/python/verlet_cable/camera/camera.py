@@ -15,6 +15,7 @@ IMAGES = ('depth', 'rgb', 'mask', 'points', 'truth')
 _MOST_THREADS = 1024
 _NOISE = {'axial': (0.0, 0.0, 0.0), 'dropout_angle': 90.0, 'baseline': 0.0, 'disparity_step': 0.0, 'edge_dropout': 0.0, 'edge_step': 0.02}
 _CAMERA = {'width': 640, 'height': 480, 'horizontal_fov': 1.05, 'near': 0.1, 'far': 10.0, 'distortion': (0.0,) * 5}
+_FURTHEST = 1e9  # [m] as of frames
 _SEEDS = 1 << 64
 _NANOSECONDS = 1e9
 
@@ -39,7 +40,8 @@ class Camera:
     measured: what is nearer has no depth, but hides what is behind it; beyond far nothing is seen. distortion: k1, k2, t1, t2, k3 of the model plumb_bob, as in sensor_msgs/CameraInfo.
 
     noise: what the sensor does to depth, a dict with some of the keys
-        axial: (a, b, c): the standard deviation at the depth z is a + b z + c z^2 [m], nowhere below 0 from near to far
+        axial: (a, b, c): the standard deviation of what is measured at the depth z is a + b z + c z^2 [m], nowhere below 0 from
+            near to far; it includes that of disparity_step, and is that alone where it is less
         dropout_angle: [degree] no depth where the line of sight is further from the surface's normal
         baseline: [m] place of the second imager, or the projector, along x of the optical frame: no depth where that sees nothing
         disparity_step: [pixels] to which disparities are rounded
@@ -111,16 +113,21 @@ class Camera:
     @pose.setter
     def pose(self, pose: ArrayLike) -> None:
         numbers = _vector('pose', pose, 7)
-        length = float(np.linalg.norm(numbers[3:]))
-        if not 0.5 <= length <= 2:
-            raise ValueError(_wrong('pose', pose, 'x, y, z, qx, qy, qz, qw with a quaternion of length 1'))
+        with np.errstate(over='ignore'):
+            length = float(np.linalg.norm(numbers[3:]))
+        if not 0.5 <= length <= 2 or (np.abs(numbers[:3]) > _FURTHEST).any():
+            raise ValueError(_wrong('pose', pose, f'x, y, z [m] (from {-_FURTHEST:g} to {_FURTHEST:g}), qx, qy, qz, qw with a quaternion of '
+                                                  'length 1 (from 0.5 to 2 is brought to 1)'))
         self._pose = (*map(float, numbers[:3]), *map(float, numbers[3:] / length))
 
     def look_at(self, eye: ArrayLike, target: ArrayLike, up: Optional[ArrayLike] = None) -> Camera:
         """Puts the camera at `eye` so that it has `target` in the middle of its image, and the direction `up` upwards in it; None: z,
         or, from straight above or below, y. Returns the camera. Raises ValueError where that cannot be."""
-        given = [('eye', eye), ('target', target)] + ([] if up is None else [('up', up)])
-        self._pose = tuple(_camera.look_at(*(tuple(map(float, _vector(name, value, 3))) for name, value in given)))
+        places = [_point('eye', eye), _point('target', target)]
+        if up is not None:
+            direction = _vector('up', up, 3)
+            places.append(direction / max(1.0, np.abs(direction).max() / _FURTHEST))
+        self._pose = tuple(_camera.look_at(*(tuple(map(float, place)) for place in places)))
         return self
 
     def labels(self, world: Union[World, Batch]) -> List[str]:
@@ -253,22 +260,37 @@ def _vector(name: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
     return numbers
 
 
+def _point(name: str, value: ArrayLike) -> NDArray[np.float64]:
+    """[m]"""
+    allowed = f'3 finite numbers [m] (from {-_FURTHEST:g} to {_FURTHEST:g})'
+    try:
+        numbers = _vector(name, value, 3)
+    except ValueError:
+        numbers = np.full(3, np.inf)
+    if (np.abs(numbers) > _FURTHEST).any():
+        raise ValueError(_wrong(name, value, allowed))
+    return numbers
+
+
 def _preset(name: Optional[str], checks: _Checks) -> Tuple[Dict[str, Any], Dict[str, Any]]:
     """Arguments and noise to begin with."""
     if name is None:
         return dict(_CAMERA), dict(_NOISE)
     known = presets()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         checks.refuse('preset', name, ', '.join(sorted(known)))
         return dict(_CAMERA), dict(_NOISE)
     return dict(known[name].camera), dict(known[name].noise)
 
 
 def _checked_images(images: Sequence[str]) -> List[str]:
-    allowed = 'a list with some of ' + ', '.join(IMAGES)
-    if isinstance(images, str) or not all(name in IMAGES for name in images) or not images:
-        raise ValueError(_wrong('images', images, allowed))
-    return list(dict.fromkeys(images))
+    try:
+        names = [] if isinstance(images, (str, bytes)) else list(images)
+    except TypeError:
+        names = []
+    if not names or not all(isinstance(name, str) and name in IMAGES for name in names):
+        raise ValueError(_wrong('images', images, 'a list with some of ' + ', '.join(IMAGES)))
+    return list(dict.fromkeys(names))
 
 
 def _drawings(world: Union[World, Batch], appearance: Dict[str, Any]) -> Tuple[Any, List[float]]:

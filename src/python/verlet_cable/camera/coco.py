@@ -23,7 +23,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Un
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from verlet_cable.camera.camera import Camera, _integer, _vector, _wrong
+from verlet_cable.camera.camera import Camera, _integer, _point, _vector, _wrong
 from verlet_cable.sim import Batch, World
 
 __all__ = ['Dataset', 'crossings']
@@ -44,12 +44,12 @@ class Dataset:
     depends on it and k only.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
-    that has pixels in the image, and of no other) and the category cable; and beside that, of images: matrix, distortion and pose of the
-    camera, the light, labels and crossings; of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
+    that has pixels in the image, and of no other) and the category cable; and beside that, of images: time [s], matrix, distortion and pose
+    of the camera, the light, labels and crossings; of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
     mask (its number in masks).
     """
 
-    def __init__(self, path: Union[str, os.PathLike[str]], keypoints: int = 21, seed: int = 0) -> None:
+    def __init__(self, path: Union[str, bytes, os.PathLike[str]], keypoints: int = 21, seed: int = 0) -> None:
         try:
             import PIL.Image  # noqa: F401
         except ImportError as error:
@@ -57,9 +57,7 @@ class Dataset:
                               'pillow)') from error
         self._keypoints = _integer('keypoints', keypoints, 2, 10000)
         self._seed = _integer('seed', seed, 0)
-        self._path = pathlib.Path(path)
-        if self._path.exists() and any(self._path.iterdir()):
-            raise ValueError(_wrong('path', str(path), 'a directory that is new or empty'))
+        self._path = _new_directory(path)
         for name in ('images', 'masks', 'depth'):
             (self._path / name).mkdir(parents=True, exist_ok=True)
         self._is_closed = False
@@ -87,23 +85,54 @@ class Dataset:
         all colors and patterns are drawn at random, too, but for those that light, background and looks say as of Camera.render.
         Raises ValueError, also once the data set is closed.
         """
-        if self._is_closed:
-            raise ValueError(f'add: {self._path} is closed, and its annotations.json is written; allowed: add() before close(), within '
-                             '`with`, or a new Dataset in another directory')
+        if not isinstance(camera, Camera):
+            raise TypeError(_wrong('camera', camera, 'a Camera'))
+        if not isinstance(vary_looks, (bool, np.bool_)):
+            raise TypeError(_wrong('vary_looks', vary_looks, 'True or False'))
+        if looks is not None and not isinstance(looks, Mapping):
+            raise TypeError(_wrong('looks', looks, 'None, or a dict of looks by the names of things'))
+        self._require_open()
         random = np.random.default_rng([self._seed, len(self._images)])
         if target is not None:
-            camera.look_at(*_random_view(random, _vector('target', target, 3), distance, elevation))
+            camera.look_at(*_random_view(random, _point('target', target), distance, elevation))
         labels = camera.labels(world)
         appearance: Dict[str, Any] = _random_appearance(random, labels) if vary_looks else {}
         appearance['looks'] = {**appearance.get('looks', {}), **(looks or {})}
         appearance.update({name: value for name, value in (('light', light), ('background', background)) if value is not None})
         seen = camera.render(world, ['depth', 'rgb', 'mask', 'truth'], **appearance)
+        of_all: Dict[str, Any] = {'matrix': camera.matrix, 'distortion': camera.distortion, 'pose': camera.pose,
+                                  'light': appearance.get('light')}
         if isinstance(world, World):
-            self._add(camera, labels, appearance, seen, seen['truth'])
+            self._add(seen, labels, world.time, **of_all)
             return
         for index in range(len(world)):
             truth = {name: {field: array[index] for field, array in cable.items()} for name, cable in seen['truth'].items()}
-            self._add(camera, labels, appearance, {name: seen[name][index] for name in ('depth', 'rgb', 'mask')}, truth)
+            images = {name: seen[name][index] for name in ('depth', 'rgb', 'mask')}
+            self._add({**images, 'truth': truth}, labels, float(world.time[index]), **of_all)
+
+    def add_images(
+        self, images: Mapping[str, Any], labels: Sequence[str], time: float, matrix: ArrayLike, distortion: Sequence[float] = (0.0,) * 5,
+        pose: Optional[ArrayLike] = None,
+    ) -> None:
+        """Adds images that were rendered before, such as those of camera_node.
+
+        images: a dict as Camera.render returns it for one world, with depth, rgb, mask and truth. labels: the names for the numbers in
+        mask, from 1 on; those of cables come first, in the order of truth. time: [s]. matrix: (3, 3) [pixels]. distortion: as
+        Camera's. pose: (7,) of the optical frame, None: not known. Raises ValueError, also once the data set is closed.
+        """
+        self._require_open()
+        checked = _checked_images(images)
+        names = list(labels) if isinstance(labels, (list, tuple)) else []
+        if not all(isinstance(name, str) for name in names) or names[:len(checked['truth'])] != list(checked['truth']):
+            raise ValueError(_wrong('labels', labels, 'a list of names, first those of the cables in truth: ' + ', '.join(checked['truth'])))
+        self._add(checked, names, float(_numbers('time', time, ())), matrix=_numbers('matrix', matrix, (3, 3)),
+                  distortion=_numbers('distortion', distortion, (5,)), light=None,
+                  pose=None if pose is None else _numbers('pose', pose, (7,)))
+
+    def _require_open(self) -> None:
+        if self._is_closed:
+            raise ValueError(f'add: {self._path} is closed, and its annotations.json is written; allowed: add() before close(), within '
+                             '`with`, or a new Dataset in another directory')
 
     def close(self) -> None:
         """Writes annotations.json; nothing more can be added."""
@@ -116,29 +145,33 @@ class Dataset:
         with open(self._path / 'annotations.json', 'w', encoding='utf-8') as file:
             json.dump(content, file)
 
-    def _add(self, camera: Camera, labels: List[str], appearance: Dict[str, Any], seen: Dict[str, Any], truth: Dict[str, Any]) -> None:
+    def _add(
+        self, seen: Dict[str, Any], labels: List[str], time: float, matrix: ArrayLike, distortion: ArrayLike,
+        pose: Optional[NDArray[np.float64]], light: Optional[Mapping[str, Any]],
+    ) -> None:
         from PIL import Image
+        truth, (height, width) = seen['truth'], seen['mask'].shape
         identity = len(self._images) + 1
         name = f'{identity:08d}.png'
         depth = np.clip(np.nan_to_num(np.round(seen['depth'] * _MILLIMETRES), nan=0), 0, 65535).astype(np.uint16)
         for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', depth)):
             Image.fromarray(np.ascontiguousarray(pixels)).save(self._path / folder / name, compress_level=1)
         self._images.append({
-            'id': identity, 'width': camera.width, 'height': camera.height, 'file_name': f'images/{name}', 'mask_file': f'masks/{name}',
-            'depth_file': f'depth/{name}', 'matrix': camera.matrix.tolist(), 'distortion': list(camera.distortion),
-            'pose': camera.pose.tolist(), 'light': _plain(appearance.get('light', {})), 'labels': labels, 'crossings': crossings(truth)})
+            'id': identity, 'width': width, 'height': height, 'file_name': f'images/{name}', 'mask_file': f'masks/{name}',
+            'depth_file': f'depth/{name}', 'time': time, 'matrix': np.asarray(matrix).tolist(),
+            'distortion': np.asarray(distortion).tolist(), 'pose': None if pose is None else pose.tolist(), 'light': _plain(light or {}),
+            'labels': labels, 'crossings': crossings(truth)})
         for number, (cable, nodes) in enumerate(truth.items(), 1):
             pixels = seen['mask'] == number
             if pixels.any():
-                self._annotations.append(self._annotation(identity, number, cable, nodes, camera, pixels))
+                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels))
 
-    def _annotation(
-        self, image: int, number: int, cable: str, nodes: Dict[str, Any], camera: Camera, pixels: NDArray[np.bool_],
-    ) -> Dict[str, Any]:
+    def _annotation(self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_]) -> Dict[str, Any]:
+        height, width = pixels.shape
         chosen = np.round(np.linspace(0, len(nodes['u']) - 1, self._keypoints)).astype(int)
         u, v = nodes['u'][chosen], nodes['v'][chosen]
         with np.errstate(invalid='ignore'):
-            is_in = (u >= -0.5) & (u < camera.width - 0.5) & (v >= -0.5) & (v < camera.height - 0.5)
+            is_in = (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
         flags = np.where(is_in, np.where(nodes['visible'][chosen], _SEEN, _HIDDEN), _NOT_THERE)
         points = np.column_stack([np.where(is_in, u, 0), np.where(is_in, v, 0)])
         keypoints = [number for (x, y), flag in zip(points.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
@@ -151,6 +184,7 @@ class Dataset:
 def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
     """Where cables of a `truth` of Camera.render cross in the image, each other or themselves: dicts with pixel [u, v], and over and
     under, which is behind: [cable, node], the node with its fraction on the way to the next one."""
+    truth = _checked_truth(truth)
     names = list(truth)
     starts, ends, owners, nodes = [], [], [], []
     for index, cable in enumerate(truth.values()):
@@ -181,6 +215,71 @@ def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
         over, under = places if depths[0] <= depths[1] else places[::-1]
         found.append({'pixel': (start[one, :2] + a * way[one]).round(3).tolist(), 'over': over, 'under': under})
     return found
+
+
+def _new_directory(path: Union[str, bytes, os.PathLike[str]]) -> pathlib.Path:
+    allowed = 'a directory that is new or empty'
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        raise TypeError(_wrong('path', path, f'the path of {allowed}, as text, bytes or os.PathLike'))
+    name = os.fsdecode(path)
+    try:
+        is_name = name != '' and b'\0' not in os.fsencode(name)
+    except UnicodeEncodeError:
+        is_name = False
+    if not is_name or (os.path.lexists(name) and (not os.path.isdir(name) or os.listdir(name))):
+        raise ValueError(_wrong('path', path, allowed))
+    return pathlib.Path(name)
+
+
+def _numbers(name: str, value: ArrayLike, shape: Tuple[int, ...]) -> NDArray[np.float64]:
+    """Finite ones."""
+    try:
+        numbers = np.asarray(value, dtype=np.float64)
+    except (TypeError, ValueError):
+        numbers = np.full(shape, np.nan)
+    if numbers.shape != shape or not np.isfinite(numbers).all():
+        raise ValueError(_wrong(name, value, 'a finite number' if not shape else f'finite numbers of the shape {shape}'))
+    return numbers
+
+
+def _checked_images(images: Mapping[str, Any]) -> Dict[str, Any]:
+    words = 'a dict with depth (height, width) [m], rgb (height, width, 3) uint8, mask (height, width) uint16 and truth, as of Camera.render'
+    if not isinstance(images, Mapping) or not {'depth', 'rgb', 'mask', 'truth'} <= set(images):
+        raise ValueError(_wrong('images', list(images) if isinstance(images, Mapping) else images, words))
+    depth, rgb, mask = (np.asarray(images[name]) for name in ('depth', 'rgb', 'mask'))
+    kinds = (depth.dtype.kind, rgb.dtype.name, mask.dtype.name)
+    if mask.ndim != 2 or mask.size == 0 or depth.shape != mask.shape or rgb.shape != (*mask.shape, 3) or kinds != ('f', 'uint8', 'uint16'):
+        given = ', '.join(f'{name} {array.shape} {array.dtype}' for name, array in (('depth', depth), ('rgb', rgb), ('mask', mask)))
+        raise ValueError(f'images: {given}; allowed: {words}')
+    truth = images['truth']
+    checked = _checked_truth(truth)
+    for name, cable in checked.items():
+        visible = np.asarray(truth[name].get('visible'))
+        if visible.shape != cable['u'].shape or visible.dtype != np.bool_:
+            raise ValueError(_wrong(f'truth[{name!r}].visible', truth[name].get('visible'), 'visible: (n + 1,) bool'))
+        cable['visible'] = visible
+    return {'depth': depth, 'rgb': rgb, 'mask': mask, 'truth': checked}
+
+
+def _checked_truth(truth: Mapping[str, Mapping[str, Any]]) -> Dict[str, Dict[str, NDArray[Any]]]:
+    """Its arrays. Raises TypeError, or ValueError."""
+    words = 'a truth as of Camera.render: {cable: {positions: (n + 1, 3), u: (n + 1,), v: (n + 1,)}}'
+    if not isinstance(truth, Mapping):
+        raise TypeError(_wrong('truth', truth, words))
+    checked = {}
+    for name, cable in truth.items():
+        if not isinstance(cable, Mapping) or not {'positions', 'u', 'v'} <= set(cable):
+            raise ValueError(_wrong(f'truth[{name!r}]', cable, words))
+        try:
+            arrays = {key: np.asarray(cable[key], dtype=np.float64) for key in ('positions', 'u', 'v')}
+        except (TypeError, ValueError):
+            raise ValueError(_wrong(f'truth[{name!r}]', cable, words)) from None
+        count = arrays['u'].size
+        shapes = [array.shape for array in arrays.values()]
+        if shapes != [(count, 3), (count,), (count,)]:
+            raise ValueError(f'truth[{name!r}]: positions, u, v of the shapes {", ".join(map(str, shapes))}; allowed: {words}')
+        checked[name] = arrays
+    return checked
 
 
 def _cross(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -21,7 +21,7 @@ World.step returns the worst status of its steps. From good to bad, with the num
     0 ok               all is well
     1 jumped           the velocity of a frame changed too much for a motion; what the frame holds was carried along
     2 overstretched    held points are further apart than the cable or net between them is long; it was lengthened
-    3 inside_obstacle  a cable is inside an obstacle, deeper than half its radius, and is pushed out
+    3 inside_obstacle  a cable is inside an obstacle, deeper than half its radius, or a body is; it is pushed out
     4 not_settled      no equilibrium was found to start from, or by settle(); said until the first step after that is done
     5 degraded         no solution was found with the shortest substeps or within the budget of work, or a net is held where it cannot
                        be: it lost its velocity and continues from rest; or cables are inside each other without room to separate

@@ -1,13 +1,11 @@
 """Simulates some samples of a sweep, as many at once as have a motion and a time step in common."""
-import copy
-
 import numpy as np
 
-from verlet_cable.sim import Batch, Scene, SceneError, World
+from verlet_cable.sim import Batch, SceneError, World
 
 from .description import MOTION
 from .errors import rejected
-from .paths import holder_of, parse_path
+from .scenes import Scenes
 from .store import COMPLETE, FAULT, MISSING, STATUSES, WRONG_SCENE
 from .variations import draw_sample
 
@@ -41,7 +39,7 @@ def simulate(sweep, layout, samples):
     for key, variation in sweep.variations.items():
         result.drawn[key] = np.array([variation.stored_value(draw[key]) for draw in draws])
     groups = {}
-    scenes = _Scenes(sweep)
+    scenes = Scenes(sweep)
     for position, draw in enumerate(draws):
         try:
             scene = scenes.of(draw)
@@ -57,24 +55,6 @@ def simulate(sweep, layout, samples):
     for (motion, time_step), members in groups.items():
         _simulate_group(sweep, layout, motion and sweep.motion_path(motion), time_step, members, result)
     return result
-
-
-class _Scenes:
-    """The scenes of draws: one tree, into which their values are put in turn."""
-
-    def __init__(self, sweep):
-        self._folder = sweep.scene_folder
-        self._tree = copy.deepcopy(sweep.tree)
-        self._places = []
-        for key, variation in sweep.variations.items():
-            if key != MOTION:
-                parts = parse_path(key)
-                self._places.append((holder_of(self._tree, parts), parts[-1], key, variation))
-
-    def of(self, draw):
-        for holder, part, key, variation in self._places:
-            holder[part] = variation.scene_value(draw[key])
-        return Scene.from_dict(self._tree, directory=self._folder)
 
 
 def _simulate_group(sweep, layout, motion, time_step, members, result):
