@@ -47,7 +47,7 @@ TEST(Sensor, NoiseIsThatOfTheModel) {
 }
 
 /// So are the figures of presets, with the steps of their disparities: over the depths that are seen, whatever step a wall is at.
-/// Where noise before rounding is 0.3 steps, its deviation is known to 2 %.
+/// Where noise before rounding is less than half a step (of kinect_v1, at 2 m), the deviation depends on the step by 3 %.
 TEST(Sensor, NoiseOfPresetsIsTheirFigure) {
   for (const CameraPreset& preset : camera_presets()) {
     const auto [a, b, c] = preset.sensor.axial;
@@ -62,7 +62,7 @@ TEST(Sensor, NoiseOfPresetsIsTheirFigure) {
       const Statistics seen = statistics(picture_of(Stage(wall(depth)), model, {}, preset.sensor).depth);
       EXPECT_GT(seen.count, 0.99 * desc.width * desc.height);
       EXPECT_NEAR(seen.mean, depth, 0.05 * expected) << preset.name << " at " << depth;
-      EXPECT_NEAR(seen.deviation, expected, 0.02 * expected) << preset.name << " at " << depth;
+      EXPECT_NEAR(seen.deviation, expected, 0.04 * expected) << preset.name << " at " << depth;
     }
   }
 }
