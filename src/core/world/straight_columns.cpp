@@ -69,17 +69,20 @@ bool is_clamped(int node, const KinematicTargets& targets) {
                      [node](const DirectionTarget& direction) { return direction.node == node; });
 }
 
+/// Whether it moves as it is told, whatever the cable does.
+bool is_told(const KinematicTarget& target, const State& state) {
+  return state.attachments[target.attachment].holder < 0 && !target.slides;
+}
+
 /// Calls `f` with each straight span between two holders that move as they are told, and are then at `place`.
 template <class Place, class Function>
 void for_each_column(int index, const State& state, const Place& place, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
-  const auto is_told = [&](const KinematicTarget& target) {
-    return state.attachments[target.attachment].holder < 0 && !target.slides;
-  };
   for (std::size_t k = 0; k + 1 < targets.nodes.size(); ++k) {
     const KinematicTarget &from = targets.nodes[k], &to = targets.nodes[k + 1];
-    if (to.node - from.node < 2 || !is_told(from) || !is_told(to) || !is_straight(cable, from.node, to.node)) continue;
+    if (to.node - from.node < 2 || !is_told(from, state) || !is_told(to, state) || !is_straight(cable, from.node, to.node))
+      continue;
     Column column{{from.node, to.node, is_clamped(from.node, targets), is_clamped(to.node, targets)}, place(from), place(to)};
     column.length = cable.length(from.node, to.node);
     if (column.distance() > 0) f(column);
@@ -259,6 +262,17 @@ void for_each_straight_span(int index, const State& state, double tolerance, con
   visit(from, cable.segments(), held, false);
 }
 
+/// Whether compression surely is too small for anything to grow by a factor of more than e in a time [s], after Gershgorin.
+/// `tension(i)` [N]: of a segment.
+template <class Tension>
+bool is_surely_stable_for(double time, const StraightSpan& span, const CableState& state, const Tension& tension) {
+  for (int i = span.first; i < span.last; ++i) {
+    const double mass = std::min(state.masses[i], state.masses[i + 1]);
+    if (-4 * tension(i) * time * time > mass * state.rest_lengths[i]) return false;
+  }
+  return true;
+}
+
 /// Moves the nodes of a span across it, each by its `shape` [m].
 void move_aside(const StraightSpan& span, const std::vector<double>& shape, int index, State& state) {
   SimulatedCable& cable = state.cables[index];
@@ -306,9 +320,10 @@ bool lies_against(const StraightSpan& span, int cable, const std::vector<Touch>&
 GivesWay gives_way(const Participant& p, const std::vector<Touch>& touches, State& state) {
   bool gives = false, bent = false;
   for_each_straight_span(p.cable, state, pressed_straightness, [&](StraightSpan span) {
+    const auto tension_at = [&](int i) { return p.stepper->tension(i); };
+    if (is_surely_stable_for(p.substep.h, span, *p.state, tension_at) || lies_against(span, p.cable, touches, state)) return;
     std::vector<double> tension;
-    for (int i = span.first; i < span.last; ++i) tension.push_back(p.stepper->tension(i));
-    if (*std::min_element(tension.begin(), tension.end()) >= 0 || lies_against(span, p.cable, touches, state)) return;
+    for (int i = span.first; i < span.last; ++i) tension.push_back(tension_at(i));
     // What presses on an end that nothing holds keeps it where it is.
     span.free_at_first = span.free_at_last = false;
     const SimulatedCable& cable = state.cables[p.cable];
@@ -351,9 +366,15 @@ void buckle_straight_columns(int index, State& state) {
 
 void seed_pressed_columns(int index, State& state) {
   SimulatedCable& cable = state.cables[index];
+  const std::vector<KinematicTarget>& targets = state.cable_progress[index].targets.nodes;
+  const auto is_told_at = [&](int node) {
+    return std::any_of(targets.begin(), targets.end(),
+                       [&](const KinematicTarget& target) { return target.node == node && is_told(target, state); });
+  };
   for_each_straight_span(index, state, seed_straightness, [&](const StraightSpan& span) {
+    if (is_told_at(span.first) && is_told_at(span.last)) return;
+    if (is_surely_stable_for(noticed_growth, span, cable.state, [&](int i) { return cable.state.tension[i]; })) return;
     const auto first = cable.state.tension.begin() + span.first, last = cable.state.tension.begin() + span.last;
-    if (std::none_of(first, last, [](double tension) { return tension < 0; })) return;
     LateralStiffness stiffness(*cable.model, cable.state, span, {first, last});
     if (!stiffness.is_stable_for(noticed_growth)) seed(span, stiffness, index, state);
   });
