@@ -10,6 +10,7 @@
 #include "world/flush_denormals.h"
 #include "world/island_stepper.h"
 #include "world/loads.h"
+#include "world/straight_columns.h"
 
 namespace verlet_cable {
 
@@ -36,6 +37,8 @@ constexpr double settled_acceleration = 1e-7;  // [m/s^2]
 /// [rad] of twist, and how often that is taken from a start.
 constexpr double settled_twist = 1e-7;
 constexpr int most_untwistings = 30;
+/// Of the rounding of a shape: what is less deep in an obstacle lies on it.
+constexpr double lying = 1e-3;
 
 }  // namespace
 
@@ -83,6 +86,20 @@ bool BodySettling::settle_start() {
   bool settled = settle();
   for (int i = 0; i < most_untwistings && settled && untwist() > settled_twist; ++i) settled = settle();
   return settled;
+}
+
+bool BodySettling::is_inside_obstacle(const std::vector<char>& counts) {
+  workspace_.members.clear();
+  for (std::size_t k = 0; k < island_.cables.size(); ++k) {
+    CableProgress& progress = state_.cable_progress[island_.cables[k]];
+    workspace_.members.push_back({progress.id, &progress.targets, &contacts_[k]});
+  }
+  move_obstacles(state_, 1, 1, workspace_.obstacles);
+  find_contacts_of(island_, state_, contact_rules(*state_.scene, true), first_step, workspace_);
+  const std::vector<Touch>& touches = workspace_.body_system.contacts().touches();
+  return std::any_of(touches.begin(), touches.end(), [&](const Touch& touch) {
+    return counts[touch.body] != 0 && (touch.inside || touch.gap < -lying * touch.radius);
+  });
 }
 
 /// Lets clamps on frames hold the material so that the cables have their rest twist between them and from junctions. Returns how
@@ -160,6 +177,8 @@ BodySettling::Outcome BodySettling::advance(double h) {
     outcome.converged = workspace_.contact_solver.solve(workspace_.participants, touches, &system, infinity);
   else
     outcome.converged = system.advance(workspace_.participants, state_.scene->tolerance);
+  for (const Participant& p : workspace_.participants)
+    outcome.converged = outcome.converged && gives_way(p, touches, state_) == GivesWay::no;
   if (!outcome.converged) return outcome;
 
   system.contacts().follow_obstacles();

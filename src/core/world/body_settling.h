@@ -17,9 +17,11 @@ class BodySettling {
   BodySettling(const Island& island, State& state, Workspace& workspace, const std::atomic<bool>* cancelled = nullptr);
   /// From where they are. False if no equilibrium was found; they are then at rest near it.
   bool settle();
-  /// As they start: clamps on frames take the cables that junctions join as they come to them, whatever roll that is. None is twisted
-  /// by bending.
+  /// As they start: clamps on frames take the cables that junctions join as they come to them, whatever roll that is. None is
+  /// twisted by bending.
   bool settle_start();
+  /// Whether a body that `counts`, a flag a body, is inside an obstacle where they are.
+  bool is_inside_obstacle(const std::vector<char>& counts);
 
  private:
   struct Outcome {
@@ -45,9 +47,9 @@ class BodySettling {
   std::vector<CableState> before_;
 };
 
-/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable; as they start, if that is so.
-/// False if one of them found no equilibrium; `unsettled` gets the names of its cables.
-bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace, std::vector<std::string>& unsettled,
-                   const std::atomic<bool>* cancelled = nullptr);
+/// Settles what bodies hold: the islands of bodies that have a cable which `settles`, a flag a cable; as they start, if that is
+/// so. False if one of them found no equilibrium; `unsettled` gets the names of its cables.
+bool settle_bodies(const std::vector<char>& settles, bool start, State& state, Workspace& workspace,
+                   std::vector<std::string>& unsettled, const std::atomic<bool>* cancelled = nullptr);
 
 }  // namespace verlet_cable

@@ -214,6 +214,7 @@ void update_targets(int index, State& state, CableOutcome& outcome, std::vector<
   const bool jumps = following.jumping_node >= 0;
   if (following.started || jumps) follow_abrupt_holders(index, following, state, outcome);
   if (!jumps) buckle_straight_columns(index, state);
+  seed_pressed_columns(index, state);
   if (!were_shown && !following.started && !jumps) return;
   const double change = follow_energy_of_cable(index, state, directions);
   outcome.change += change;
@@ -316,6 +317,7 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   const double h = (to - from) * state_.scene->time_step;
   const bool touching = touches();
   substep_ = {};
+  bends_columns_ = false;
   workspace_.participants.clear();
   const Scheme touching_scheme = find_touching_scheme(island, h);
   bool converged = true;
@@ -359,12 +361,13 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   BodySystem* const bodies = island.bodies.empty() ? nullptr : &workspace_.body_system;
   if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
   if (converged && bodies != nullptr && !touching)
-    converged = advance_bodies() || advance_straight_bodies(island, from, to, touching_scheme);
+    converged = advance_bodies(from, tolerated) || advance_straight_bodies(island, from, to, touching_scheme, tolerated);
   contact_work_ = 0;
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
-    converged = solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies, most_contact_work_) &&
-                (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !folds_columns(from)));
+    converged =
+        solver.solve(workspace_.participants, workspace_.contacts.touches(), bodies, most_contact_work_) &&
+        (tolerated || (!solver.crosses(workspace_.participants, workspace_.contacts.touches()) && !columns_give_way(from)));
     contact_work_ = solver.work();
     if (converged) {
       solver.finish(workspace_.participants, workspace_.contacts.touches());
@@ -389,19 +392,19 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   return converged;
 }
 
-/// Changes what folds, as an edit would; the others are as before. `part`: of the step, where the substep begins.
-bool IslandStepper::folds_columns(double part) {
-  bool folds = false;
+/// Changes what gets a seed, as an edit would; the others are as before. `part`: of the step, where the substep begins.
+bool IslandStepper::columns_give_way(double part) {
+  bool give_way = false;
   for (const Participant& p : workspace_.participants) {
-    if (!workspace_.contacts.touched(p.place)) continue;
-    const std::vector<PressedColumn> columns = find_pressed_columns(p, workspace_.contacts.touches(), state_);
-    if (columns.empty()) continue;
-    folds = true;
     const double before = energy_at(p.cable, part);
-    for (const PressedColumn& column : columns) fold(column, p.cable, state_);
+    const GivesWay gives = gives_way(p, workspace_.contacts.touches(), state_);
+    if (gives == GivesWay::no) continue;
+    give_way = true;
+    if (gives == GivesWay::shorter) continue;
+    bends_columns_ = true;
     account_for_edit(energy_at(p.cable, part) - before, outcomes_[p.cable].balance);
   }
-  return folds;
+  return give_way;
 }
 
 void IslandStepper::find_contacts(Island& island, double from, double to) {

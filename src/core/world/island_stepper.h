@@ -103,8 +103,8 @@ class IslandStepper {
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void begin_bodies(const Island& island, double from, double to, Scheme scheme);
-  bool advance_bodies();
-  bool advance_straight_bodies(const Island& island, double from, double to, Scheme scheme);
+  bool advance_bodies(double from, bool tolerated);
+  bool advance_straight_bodies(const Island& island, double from, double to, Scheme scheme, bool tolerated);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void update_body_targets(const Island& island, IslandOutcome& found);
@@ -115,7 +115,7 @@ class IslandStepper {
   void find_contacts(Island& island, double from, double to);
   double middle_of(double from, double to) const;
   bool touches() const;
-  bool folds_columns(double part);
+  bool columns_give_way(double part);
   Scheme scheme_of(int cable) const;
   Scheme find_touching_scheme(const Island& island, double h);
   /// Returns the part of the step that it has wound.
@@ -157,6 +157,7 @@ class IslandStepper {
   double joined_mass_ = 0;               ///< [kg] of the island, where there are bodies
   double most_contact_work_ = infinity;  ///< of the next attempt, see `budget`
   double contact_work_ = 0;              ///< that the last one took
+  bool bends_columns_ = false;           ///< the last attempt has bent columns, and is to be made again
   EnergyBalance substep_;                ///< of contacts and bodies in the last one
   int lanes_;                            ///< two a cable that is stepped together with others
 };

@@ -23,14 +23,19 @@ constexpr double rounding_of_gravity = 1e-9;
 /// Loads of less than so much of Euler's for hinges do not buckle a chain of segments, however it is held.
 constexpr double surely_stable = 0.5;
 constexpr int bisections = 40;
-/// Of a span's length: what is pressed against something and less aside stays straight for too long.
+/// Of a span's length: what is pressed together and less aside stays straight for too long.
 constexpr double pressed_straightness = 1e-3;
-/// Of what presses: less compression is none.
-constexpr double noticed_pressure = 1e-2;
 /// Of what presses: less along the column is a thing that the cable lies against.
 constexpr double pressed_along = 0.7;
-/// Of a segment, by which it is turned at most where its cable buckles under that.
-constexpr double pressed_slope = 1e-2;
+/// Of a segment, by which it is turned at most where its cable is to leave a line: what hangs on it would be lifted by less than
+/// 1e-9 of the length.
+constexpr double seed_slope = 6e-5;
+/// Of a span's length: what is less aside has no seed.
+constexpr double seed_straightness = 1e-7;
+/// Of the bow that a substep needs: what is less aside has no room.
+constexpr double part_of_room = 0.1;
+/// [s] What grows more slowly than by a factor of e in it is not seen.
+constexpr double noticed_growth = 1;
 /// Of a span's length: a bow for more slack is no start for a step in which gravity pulls it aside, too.
 constexpr double largest_slack_aside = 0.03;
 
@@ -64,17 +69,20 @@ bool is_clamped(int node, const KinematicTargets& targets) {
                      [node](const DirectionTarget& direction) { return direction.node == node; });
 }
 
+/// Whether it moves as it is told, whatever the cable does.
+bool is_told(const KinematicTarget& target, const State& state) {
+  return state.attachments[target.attachment].holder < 0 && !target.slides;
+}
+
 /// Calls `f` with each straight span between two holders that move as they are told, and are then at `place`.
 template <class Place, class Function>
 void for_each_column(int index, const State& state, const Place& place, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
-  const auto is_told = [&](const KinematicTarget& target) {
-    return state.attachments[target.attachment].holder < 0 && !target.slides;
-  };
   for (std::size_t k = 0; k + 1 < targets.nodes.size(); ++k) {
     const KinematicTarget &from = targets.nodes[k], &to = targets.nodes[k + 1];
-    if (to.node - from.node < 2 || !is_told(from) || !is_told(to) || !is_straight(cable, from.node, to.node)) continue;
+    if (to.node - from.node < 2 || !is_told(from, state) || !is_told(to, state) || !is_straight(cable, from.node, to.node))
+      continue;
     Column column{{from.node, to.node, is_clamped(from.node, targets), is_clamped(to.node, targets)}, place(from), place(to)};
     column.length = cable.length(from.node, to.node);
     if (column.distance() > 0) f(column);
@@ -232,79 +240,112 @@ void bend(const Column& column, double slack, double time, double waves, int ind
   start_anew(before, index, state);
 }
 
-/// Calls `f` with each span, almost straight, from an end that nothing holds to what holds the cable next, or to the other end,
-/// and with whether it is held at its last node.
+/// Calls `f` with each span, about as straight, between what holds a cable, whatever that is, and its ends.
 template <class Function>
-void for_each_free_column(int index, const State& state, const Function& f) {
+void for_each_straight_span(int index, const State& state, double tolerance, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
-  const auto visit = [&](int first, int last, bool held_at_last) {
-    if (last - first < 2 || !is_straight(cable, first, last, pressed_straightness)) return;
-    Column column{
-        {first, last, is_clamped(first, targets), is_clamped(last, targets)}, cable.positions[first], cable.positions[last]};
-    column.length = cable.length(first, last);
-    f(column, held_at_last);
+  const auto visit = [&](int first, int last, bool held_at_first, bool held_at_last) {
+    if (last - first < 2 || !is_straight(cable, first, last, tolerance)) return;
+    StraightSpan span{first, last, is_clamped(first, targets), is_clamped(last, targets)};
+    span.free_at_first = !held_at_first;
+    span.free_at_last = !held_at_last;
+    f(span);
   };
-  if (targets.nodes.empty()) return visit(0, cable.segments(), false);
-  visit(0, targets.nodes.front().node, true);
-  visit(targets.nodes.back().node, cable.segments(), false);
+  int from = 0;
+  bool held = false;
+  for (const KinematicTarget& target : targets.nodes) {
+    visit(from, target.node, held, true);
+    from = target.node;
+    held = true;
+  }
+  visit(from, cable.segments(), held, false);
 }
 
-}  // namespace
+/// Whether compression surely is too small for anything to grow by a factor of more than e in a time [s], after Gershgorin.
+/// `tension(i)` [N]: of a segment.
+template <class Tension>
+bool is_surely_stable_for(double time, const StraightSpan& span, const CableState& state, const Tension& tension) {
+  for (int i = span.first; i < span.last; ++i) {
+    const double mass = std::min(state.masses[i], state.masses[i + 1]);
+    if (-4 * tension(i) * time * time > mass * state.rest_lengths[i]) return false;
+  }
+  return true;
+}
 
-void fold(const PressedColumn& pressed, int index, State& state) {
+/// Moves the nodes of a span across it, each by its `shape` [m].
+void move_aside(const StraightSpan& span, const std::vector<double>& shape, int index, State& state) {
   SimulatedCable& cable = state.cables[index];
   const std::vector<Vector3> before = cable.state.positions;
-  const Column column{{pressed.first, pressed.last}, before[pressed.first], before[pressed.last]};
-  const Vector3 aside = across(column, cable, state);
-  double steepest = 0;
-  const auto slope = [&](int k) {
-    return (pressed.shape[k + 1] - pressed.shape[k]) / cable.state.rest_lengths[column.first + k];
-  };
-  for (int k = 0; k < column.segments(); ++k) steepest = std::max(steepest, std::abs(slope(k)));
-  const auto turned = [&](int k) -> Vector3 {
-    const int i = column.first + k;
-    const Vector3 segment = before[i + 1] - before[i];
-    return segment.norm() * (segment.normalized() + pressed_slope / steepest * slope(k) * aside).normalized();
-  };
-  std::vector<Vector3>& positions = cable.state.positions;
-  for (int k = 0; k < column.segments() && !pressed.held_at_last; ++k)
-    positions[column.first + k + 1] = positions[column.first + k] + turned(k);
-  for (int k = column.segments(); k-- > 0 && pressed.held_at_last;)
-    positions[column.first + k] = positions[column.first + k + 1] - turned(k);
+  const Vector3 aside = across({span, before[span.first], before[span.last]}, cable, state);
+  for (int k = 0; k <= span.segments(); ++k) cable.state.positions[span.first + k] += shape[k] * aside;
   start_anew(before, index, state);
 }
 
-namespace {
+/// Turns the segments of an unstable span a little, by what grows; their lengths change by less than is tolerated.
+void seed(const StraightSpan& span, LateralStiffness& stiffness, int index, State& state) {
+  const std::vector<double>& lengths = state.cables[index].state.rest_lengths;
+  std::vector<double> shape = stiffness.growing_shape();
+  double steepest = 0;
+  for (int k = 0; k < span.segments(); ++k)
+    steepest = std::max(steepest, std::abs(shape[k + 1] - shape[k]) / lengths[span.first + k]);
+  for (double& place : shape) place *= seed_slope / steepest;
+  move_aside(span, shape, index, state);
+}
 
-/// [N] The largest of the forces that press on a cable along a column; infinite where it lies against something, whose friction
-/// keeps it straight.
-double pressure_along(const Column& column, int cable, const std::vector<Touch>& touches) {
-  const Vector3 along = column.direction();
-  double pressure = 0;
-  for (const Touch& touch : touches) {
-    if (touch.point.cable != cable && touch.other.cable != cable) continue;
-    if (touch.normal_force > 0 && std::abs(touch.normal.dot(along)) < pressed_along) return infinity;
-    pressure = std::max(pressure, touch.normal_force);
-  }
-  return pressure > 0 ? pressure : infinity;
+/// [m] By which the ends of a span come together in a substep at most, where what is pressed against it stops at once: the way of
+/// the span along itself.
+double sudden_slack(const StraightSpan& span, const Participant& p) {
+  const std::vector<Vector3>& positions = p.state->positions;
+  const Vector3 along = (positions[span.last] - positions[span.first]).normalized();
+  const auto way = [&](int node) { return std::abs(along.dot(get(p.stepper->displacement(), node))); };
+  return std::max(way(span.first), way(span.last));
+}
+
+/// Whether something lies against a span, whose friction keeps it straight.
+bool lies_against(const StraightSpan& span, int cable, const std::vector<Touch>& touches, const State& state) {
+  const std::vector<Vector3>& positions = state.cables[cable].state.positions;
+  const Vector3 along = (positions[span.last] - positions[span.first]).normalized();
+  const auto is_in_span = [&](const CablePoint& point) {
+    return point.cable == cable && point.segment >= span.first && point.segment < span.last;
+  };
+  return std::any_of(touches.begin(), touches.end(), [&](const Touch& touch) {
+    return touch.normal_force > 0 && (is_in_span(touch.point) || is_in_span(touch.other)) &&
+           std::abs(touch.normal.dot(along)) < pressed_along;
+  });
 }
 
 }  // namespace
 
-std::vector<PressedColumn> find_pressed_columns(const Participant& p, const std::vector<Touch>& touches, const State& state) {
-  std::vector<PressedColumn> found;
-  for_each_free_column(p.cable, state, [&](const Column& column, bool held_at_last) {
-    double least = 0;
-    for (int i = column.first; i < column.last; ++i) least = std::min(least, p.stepper->tension(i));
-    if (least > -noticed_pressure * pressure_along(column, p.cable, touches)) return;
+GivesWay gives_way(const Participant& p, const std::vector<Touch>& touches, State& state) {
+  bool gives = false, bent = false;
+  for_each_straight_span(p.cable, state, pressed_straightness, [&](StraightSpan span) {
+    const auto tension_at = [&](int i) { return p.stepper->tension(i); };
+    if (is_surely_stable_for(p.substep.h, span, *p.state, tension_at) || lies_against(span, p.cable, touches, state)) return;
     std::vector<double> tension;
-    for (int i = column.first; i < column.last; ++i) tension.push_back(p.stepper->tension(i));
-    LateralStiffness stiffness(*state.cables[p.cable].model, state.cables[p.cable].state, column, tension);
+    for (int i = span.first; i < span.last; ++i) tension.push_back(tension_at(i));
+    // What presses on an end that nothing holds keeps it where it is.
+    span.free_at_first = span.free_at_last = false;
+    const SimulatedCable& cable = state.cables[p.cable];
+    LateralStiffness stiffness(*cable.model, cable.state, span, tension);
     if (stiffness.is_stable_for(p.substep.h)) return;
-    found.push_back({column.first, column.last, held_at_last, stiffness.growing_shape()});
+    gives = true;
+    const double length = cable.state.length(span.first, span.last);
+    const double slack = std::min(sudden_slack(span, p), largest_slack_aside * length);
+    if (slack < seed_slope * seed_slope * length) {
+      if (!is_straight(cable.state, span.first, span.last, seed_straightness)) return;
+      seed(span, stiffness, p.cable, state);
+    } else {
+      const double waves = p.substep.statics ? 1 : waves_of_sudden_bow(*cable.model, cable.state, span, p.substep.h);
+      const Bow bow = find_bow(cable.state, span, length - slack, waves);
+      const auto [least, most] = std::minmax_element(bow.across.begin(), bow.across.end());
+      const double room = std::max(*most, -*least);
+      if (!is_straight(cable.state, span.first, span.last, part_of_room * room / length)) return;
+      move_aside(span, bow.across, p.cable, state);
+    }
+    bent = true;
   });
-  return found;
+  return bent ? GivesWay::anew : gives ? GivesWay::shorter : GivesWay::no;
 }
 
 void buckle_straight_columns(int index, State& state) {
@@ -320,6 +361,22 @@ void buckle_straight_columns(int index, State& state) {
     if (slack == 0) return;
     if (slack > largest_slack_aside * column.length && !gravity_across(column, cable, state).isZero(0)) return;
     bend(column, slack, time, waves_of_sudden_bow(*cable.model, cable.state, column, time), index, state);
+  });
+}
+
+void seed_pressed_columns(int index, State& state) {
+  SimulatedCable& cable = state.cables[index];
+  const std::vector<KinematicTarget>& targets = state.cable_progress[index].targets.nodes;
+  const auto is_told_at = [&](int node) {
+    return std::any_of(targets.begin(), targets.end(),
+                       [&](const KinematicTarget& target) { return target.node == node && is_told(target, state); });
+  };
+  for_each_straight_span(index, state, seed_straightness, [&](const StraightSpan& span) {
+    if (is_told_at(span.first) && is_told_at(span.last)) return;
+    if (is_surely_stable_for(noticed_growth, span, cable.state, [&](int i) { return cable.state.tension[i]; })) return;
+    const auto first = cable.state.tension.begin() + span.first, last = cable.state.tension.begin() + span.last;
+    LateralStiffness stiffness(*cable.model, cable.state, span, {first, last});
+    if (!stiffness.is_stable_for(noticed_growth)) seed(span, stiffness, index, state);
   });
 }
 

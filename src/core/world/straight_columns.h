@@ -17,18 +17,23 @@ namespace verlet_cable {
 ///   energy is a tiny part of what is stored in its compression: from there it buckles by itself.
 void buckle_straight_columns(int cable, State& state);
 
-/// A span from what holds a cable to an end that nothing holds, or from end to end, which what it touches presses together.
-struct PressedColumn {
-  int first = 0, last = 0;  ///< nodes
-  bool held_at_last = false;
-  std::vector<double> shape;  ///< in which it buckles: nodes, across it, of any size
+/// What the last substep pressed together so that it would buckle, and is exactly straight, gets a seed of that: it is bent by so
+/// little that this neither makes energy nor changes lengths. Spans to bodies, guides and ends that nothing holds: those between
+/// holders that move as they are told are judged by where these will be.
+void seed_pressed_columns(int cable, State& state);
+
+/// What is to become of a substep whose solution may be one that does not last.
+enum class GivesWay {
+  no,       ///< it lasts
+  anew,     ///< it is to be solved again, as columns have been bent
+  shorter,  ///< a shorter one is to be solved instead
 };
 
-/// Those that would buckle within the substep under the tension that this has found. They are to be folded, and the substep to be
-/// tried again: else what cannot stretch would go straight through the floor.
-std::vector<PressedColumn> find_pressed_columns(const Participant& p, const std::vector<Touch>& touches, const State& state);
-/// Folds one of a cable a little, without changing its length.
-void fold(const PressedColumn& column, int cable, State& state);
+/// Whether a cable that touches something, or that bodies hold, would buckle within the substep under the tension that this has
+/// found: the motion is then none that lasts, but a saddle, as those of columns that are pressed together on a line. What is
+/// exactly straight is bent, across itself alone: as much as the substep has room for, where it is pressed suddenly, without
+/// getting any velocity by that; else a seed is enough.
+GivesWay gives_way(const Participant& p, const std::vector<Touch>& touches, State& state);
 
 /// The same where holders have jumped together: the cable takes a bow between them, before it is carried along.
 void carry_straight_columns(int cable, State& state);

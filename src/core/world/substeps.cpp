@@ -69,7 +69,7 @@ bool IslandStepper::advance_within(double most_work, Island& island, StepProgres
     if (advance_part(island, {progress.done, progress.done + ticks, whole}, !splits, contacts_known, progress, found)) {
       if (progress.level > 0 && was_easy() && progress.done % (2 * ticks) == 0) --progress.level;
     } else if (splits) {
-      ++progress.level;
+      if (!bends_columns_) ++progress.level;
     } else if (!progress.stopped) {
       stop(island, DegradedCause::no_solution, found);
       progress.stopped = true;

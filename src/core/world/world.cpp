@@ -104,6 +104,25 @@ std::vector<int> take_out(std::vector<int>& waiting, const Starts& starts) {
   return taken;
 }
 
+/// Adds, to the cables that settle, of those that have just started the ones that start by default, where bodies without poses of
+/// their own would be put inside an obstacle.
+void add_those_inside_obstacles(const std::vector<int>& descs, State& state, Workspace& workspace, std::vector<char>& settles) {
+  if (state.obstacles.empty()) return;
+  const SceneDesc& scene = *state.scene;
+  std::vector<char> has_default(state.cables.size(), 0), has_no_pose(state.bodies.size(), 0);
+  for (const int i : descs)
+    if (scene.cables[i].initial.type == InitialShapeDesc::Type::automatic)
+      has_default[find(state.cables, scene.cables[i].name)] = 1;
+  for (std::size_t b = 0; b < scene.bodies.size(); ++b) has_no_pose[b] = has_pose(scene.bodies[b]) ? 0 : 1;
+  Islands islands;
+  islands.build(state);
+  for (const Island& island : islands.all()) {
+    if (island.bodies.empty() || !BodySettling(island, state, workspace).is_inside_obstacle(has_no_pose)) continue;
+    for (const int cable : island.cables)
+      if (has_default[cable] != 0) settles[cable] = 1;
+  }
+}
+
 }  // namespace
 
 int Frames::find(const std::string& name) const {
@@ -400,7 +419,8 @@ void World::Implementation::start_cable(const CableDesc& desc, const FrameIds& i
   place_bodies_on(placing);
 }
 
-/// Bodies whose cables have just started settle with those that are to. They begin to move from there.
+/// Bodies whose cables have just started settle with those that are to, and those that would start inside an obstacle. They begin
+/// to move from there.
 void World::Implementation::settle_started_bodies(const std::vector<int>& descs) {
   if (state.bodies.empty() || is_cancelled()) return;
   std::vector<char> settles(state.cables.size(), 0);
@@ -409,6 +429,7 @@ void World::Implementation::settle_started_bodies(const std::vector<int>& descs)
     const int cable = find(state.cables, desc.name);
     settles[cable] = settles_at_start(desc, *state.cables[cable].model, state.cables[cable].state) ? 1 : 0;
   }
+  add_those_inside_obstacles(descs, state, workspaces.value.local(), settles);
   const std::vector<SimulatedBody> moving = state.bodies;
   settle_bodies(settles, true, state, workspaces.value.local(), findings.unsettled, cancelled);
   for (std::size_t b = 0; b < moving.size(); ++b) {
