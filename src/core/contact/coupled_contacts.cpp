@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/inner_products.h"
+#include "chain/node_sums.h"
 #include "chain/point_motion.h"
 
 namespace verlet_cable {

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "chain/point_motion.h"
+#include "chain/node_sums.h"
 #include "geometry/eigen_vectors.h"
 #include "law/drag.h"
-#include "law/length_rate.h"
 #include "law/resistance.h"
-#include "rod/rigid_motion.h"
-#include "rod/tridiagonal.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {
@@ -21,13 +18,6 @@ constexpr int step_iterations = 40;
 constexpr double slow_convergence = 0.1;
 /// Of the lengths of such spans, relative.
 constexpr double greatest_gap = 1e-7;
-/// Of the first `count` numbers.
-void add(const std::vector<double>& more, int count, std::vector<double>& sum) {
-  const double* from = more.data();
-  double* to = sum.data();
-#pragma GCC ivdep
-  for (int i = 0; i < count; ++i) to[i] += from[i];
-}
 
 }  // namespace
 
@@ -274,16 +264,6 @@ void CableStepper::start_bending(const Substep& s, const CableState& state) {
   couples_second_ = bending_.active();
 }
 
-/// At a winch what bends moves with the material, not with the node.
-template <class Operation>
-void CableStepper::with_material(const Operation& operation) {
-  const int node = std::max(winch_node_, 0);
-  const Vector3 displacement = get(displacement_, node);
-  if (winch_node_ >= 0) set(displacement_, node, displacement + material_way_);
-  operation();
-  set(displacement_, node, displacement);
-}
-
 /// First guess: the motion goes on as in the last substep.
 void CableStepper::predict(double h) {
   for (int i = 0; i <= segments_; ++i) {
@@ -506,134 +486,6 @@ double CableStepper::correct() {
   return larger(size, rod_.correct(1));
 }
 
-void CableStepper::follow_holders(const Boundary& boundary) {
-  hold(boundary.nodes);
-  if (rod_.active()) rod_.follow_clamps(boundary);
-}
-
-void CableStepper::read_holder_loads(const Substep& s, const std::vector<double>& masses, bool corrected,
-                                     HolderLoads& loads) const {
-  const Boundary& boundary = s.boundary;
-  loads.forces.resize(boundary.nodes.size());
-  loads.torques.assign(boundary.directions.size(), Vector3::Zero());
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
-    const int i = boundary.nodes[k].node;
-    const Vector3 load = corrected ? corrected_load(i) : get(system_.load, i);
-    loads.forces[k] = load + s.inertia() * masses[i] / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
-    if (!flows_.empty()) loads.forces[k] += flow_reaction(s, i);
-  }
-  if (!rod_.active()) return;
-  rod_.add_clamp_torques(loads.torques);
-  if (corrected) rod_.add_clamp_reactions(system_, loads.torques);
-}
-
-void CableStepper::add_moved(const Boundary& boundary, const HolderMotion& motion) {
-  solve_for_motion(boundary, motion);
-  solution().add(kept_solution_);
-  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction += kept_ways_[k];
-  // What clamps that turn exert on the nodes beside them.
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z})
-    add(system_.load.*component, segments_ + 1, kept_load_.*component);
-  exchange_loads();
-}
-
-void CableStepper::respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads) {
-  solve_for_motion(boundary, motion);
-  loads.forces.resize(boundary.nodes.size());
-  loads.torques.assign(boundary.directions.size(), Vector3::Zero());
-  system_.moves_held = true;
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) {
-    const int i = boundary.nodes[k].node;
-    loads.forces[k] = corrected_load(i);
-    if (!rod_.active()) loads.forces[k] -= (system_.diagonal[i] - inertia_[i]) * motion.displacements[k];
-    if (system_.stiffened) loads.forces[k] -= get(system_.added, i) * motion.displacements[k];
-  }
-  if (rod_.active()) rod_.add_clamp_reactions(system_, loads.torques);
-  loads.displacements.resize(motion.loads.size());
-  for (std::size_t k = 0; k < motion.loads.size(); ++k) loads.displacements[k] = at_point(motion.loads[k].point, correction());
-  system_.moves_held = false;
-  std::swap(solution(), kept_solution_);
-  for (std::size_t k = 0; k < flows_.size(); ++k) flows_[k].correction = kept_ways_[k];
-  exchange_loads();
-}
-
-/// Leaves the loads and the solution that were there in those that are kept.
-void CableStepper::solve_for_motion(const Boundary& boundary, const HolderMotion& motion) {
-  exchange_loads();
-  std::swap(solution(), kept_solution_);
-  kept_ways_.resize(flows_.size());
-  for (std::size_t k = 0; k < flows_.size(); ++k) kept_ways_[k] = flows_[k].correction;
-  system_.flow_load.assign(flows_.size(), 0.0);
-  system_.load.assign(segments_ + 2, 0.0);
-  system_.gap.assign(segments_ + 2, 0.0);
-  rod_.torque().assign(segments_ + 2, 0.0);
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k)
-    set(system_.held_displacement, boundary.nodes[k].node, motion.displacements[k]);
-  if (rod_.active()) rod_.add_clamp_loads(motion.rotations, system_);
-  for (const PointLoad& load : motion.loads) add_force(load.point, load.force, system_.load);
-  system_.moves_held = true;
-  solve_linear();
-  system_.moves_held = false;
-}
-
-void CableStepper::exchange_loads() {
-  std::swap(system_.load, kept_load_);
-  std::swap(system_.gap, kept_gap_);
-  std::swap(rod_.torque(), kept_torque_);
-  std::swap(system_.flow_load, kept_flow_load_);
-}
-
-void CableStepper::begin_projection(const Substep& s, const CableState& state) {
-  rod_.leave_out();
-  couples_second_ = true;  // whatever bends next sets them anew
-  system_.clear_stiffness();
-  std::fill(system_.second.begin(), system_.second.end(), 0.0);
-  for (int i = 0; i <= segments_; ++i) {
-    inertia_[i] = system_.diagonal[i] = state.masses[i];
-    set(system_.load, i, Vector3::Zero());
-  }
-  for (int i = 0; i < segments_; ++i) {
-    const Vector3 d = state.positions[i + 1] - state.positions[i];
-    set(system_.direction, i, d);
-    system_.first[i] = 0;
-    const double compliance = d.squaredNorm() / (state.masses[i] + state.masses[i + 1]);
-    const bool stretches = is_elastic_at(i) || yields_[i] != 0 || keeps_tension(i);
-    system_.compliance[i] = (stretches ? 1 / length_rate_regularisation : length_rate_regularisation) * compliance;
-    system_.gap[i] = stretches ? 0 : d.dot(state.velocities[i] - state.velocities[i + 1]);
-  }
-  for (const GrowingSegment& growing : s.boundary.growing)
-    if (!is_elastic_at(growing.segment) && !growing.keeps_tension)
-      system_.gap[growing.segment] += state.rest_lengths[growing.segment] * growing.growth;
-  if (!flows_.empty()) begin_flow_projection(s, state);
-  for (const int i : both_held_) system_.gap[i] = 0;
-  solver_.factor(system_, false);
-  if (!flows_.empty()) factor_flows();
-}
-
-void CableStepper::read_impulses(const Boundary& boundary, HolderLoads& impulses) const {
-  impulses.forces.resize(boundary.nodes.size());
-  impulses.torques.assign(boundary.directions.size(), Vector3::Zero());
-  for (std::size_t k = 0; k < boundary.nodes.size(); ++k) impulses.forces[k] = corrected_load(boundary.nodes[k].node);
-}
-
-void CableStepper::finish_projection(const Substep& s, CableState& state, SubstepResult& result) {
-  const VectorArray& change = solver_.displacement();
-  for (int i = 0; i <= segments_; ++i) {
-    state.velocities[i] += get(change, i);
-    state.accelerations[i] += get(change, i) / s.h;
-  }
-  for (HeldNode& held : s.boundary.nodes) {
-    held.mend(corrected_load(held.node) / s.h, 1);
-    if (held.body < 0) continue;
-    held.velocity += get(change, held.node);
-    held.force -= state.masses[held.node] / s.h * get(change, held.node);
-  }
-  for (std::size_t k = 0; k < flows_.size(); ++k) mend_flow(flows_[k], flows_[k].correction, s.boundary.flows[k], result);
-  for (const GrowingSegment& growing : s.boundary.growing)
-    if (!is_elastic_at(growing.segment) && !growing.keeps_tension)
-      balance_mended_growth(growing, -multiplier_correction()[growing.segment], result);
-}
-
 void CableStepper::take_back(double part) {
   const VectorArray& delta = correction();
   for (int i = 0; i <= segments_; ++i) set(displacement_, i, get(displacement_, i) - part * get(delta, i));
@@ -679,235 +531,11 @@ void CableStepper::move(const Substep& s) {
   }
 }
 
-/// Impulses along inextensible segments that end all change of length but that of rest lengths; without them such velocities
-/// would alternate from step to step.
-void CableStepper::project(const Substep& s, const std::vector<double>& masses, SubstepResult& result) {
-  if (!any_rigid_) return;
-  const int n = segments_;
-  for (int i = 0; i <= n; ++i) inverse_mass_[i] = system_.movable[i] / masses[i];
-  std::fill(pivot_.begin(), pivot_.end(), 0.0);
-  std::fill(off_.begin(), off_.end(), 0.0);
-  std::fill(impulse_.begin(), impulse_.end(), 0.0);
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-    const double *d = (segment_.*component).data(), *v = (end_velocity_.*component).data();
-    double *square = pivot_.data(), *product = off_.data(), *rate = impulse_.data();
-#pragma GCC ivdep
-    for (int i = 0; i < n; ++i) {
-      square[i] += d[i] * d[i];
-      product[i] += d[i] * d[i + 1];  // the last one is not used
-      rate[i] += d[i] * (v[i] - v[i + 1]);
-    }
-  }
-  for (int i = 0; i < n; ++i) {
-    pivot_[i] = length_rate_diagonal(pivot_[i], inverse_mass_[i] + inverse_mass_[i + 1]);
-    off_[i] = length_rate_coupling(off_[i], inverse_mass_[i + 1]);
-  }
-  for (const GrowingSegment& growing : s.boundary.growing)
-    impulse_[growing.segment] += target_length_[growing.segment] * growing.growth;
-  for (const int i : both_held_) {
-    pivot_[i] = 1;
-    impulse_[i] = 0;
-  }
-  for (int i = 0; (any_elastic_ || !overstretched_.empty()) && i < n; ++i) {
-    if (!is_elastic_at(i) && yields_[i] == 0) continue;
-    pivot_[i] = 1;
-    off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
-  }
-  if (winch_.segment >= 0 && keeps_tension(winch_.segment) && !grows(winch_.segment)) {
-    const int i = winch_.segment;
-    pivot_[i] = 1;
-    off_[i] = off_[std::max(i - 1, 0)] = impulse_[i] = 0;
-  }
-  if (!flows_.empty()) project_flows(s);
-  growth_ = impulse_;
-  solve_tridiagonal(pivot_, off_, impulse_, n);
-  scale_to_lose(s);
-  if (!flows_.empty()) push_flows(s, result);
-  for (const GrowingSegment& growing : s.boundary.growing) balance_mended_growth(growing, impulse_[growing.segment], result);
-  for (auto component : {&VectorArray::x, &VectorArray::y, &VectorArray::z}) {
-    const double *d = (segment_.*component).data(), *w = inverse_mass_.data(), *impulse = impulse_.data();
-    double* v = (end_velocity_.*component).data();
-    v[0] -= w[0] * impulse[0] * d[0];
-#pragma GCC ivdep
-    for (int i = 1; i < n; ++i) v[i] += w[i] * (impulse[i - 1] * d[i - 1] - impulse[i] * d[i]);
-    v[n] += w[n] * impulse[n - 1] * d[n - 1];
-  }
-  const double lasting_part = s.scheme == Scheme::damped ? 0 : 1;
-  for (HeldNode& target : s.boundary.nodes) target.mend(projected_impulse_on(target.node) / s.h, lasting_part);
-}
-
-/// Where holders would make energy, no more of the impulses acts than makes none.
-void CableStepper::scale_to_lose(const Substep& s) {
-  double ended = 0;
-  for (int i = 0; i < segments_; ++i) ended += impulse_[i] * growth_[i];
-  const double share =
-      losing_share_of_projection(s.boundary.nodes, s.h, ended, [&](int node) { return projected_impulse_on(node); });
-  for (int i = 0; i < segments_; ++i) impulse_[i] *= share;
-}
-
-/// What the segments exert on the other nodes they exert on the holders: on a held node [N s].
-Vector3 CableStepper::projected_impulse_on(int node) const {
-  Vector3 impulse = Vector3::Zero();
-  if (node > 0) impulse += impulse_[node - 1] * get(segment_, node - 1);
-  if (node < segments_) impulse -= impulse_[node] * get(segment_, node);
-  return impulse;
-}
-
-/// Substeps that damp keep momenta to second order. Those of a free cable are kept exactly: what is missing is given back as a
-/// rigid body's motion.
-void CableStepper::restore_momenta(const Substep& s, const std::vector<double>& masses) {
-  const Vector3 center = center_of_mass(masses, position_), way = center_of_mass(masses, displacement_);
-  Vector3 momentum = Vector3::Zero(), angular_momentum = Vector3::Zero();
-  for (int i = 0; i <= segments_; ++i) {
-    const Vector3 u = get(displacement_, i), v = get(velocity_, i), end = get(end_velocity_, i);
-    const Vector3 arm = get(position_, i) - center, start_arm = arm - (u - way);
-    const Vector3 gain = s.inertia() * (u / s.h - v);  // what the forces have done
-    momentum += masses[i] * (v + gain - end);
-    angular_momentum += masses[i] * (start_arm.cross(v) + arm.cross(gain - end));
-  }
-  const RigidMotion missing = rigid_motion(masses, position_, momentum, angular_momentum);
-  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + missing.at(get(position_, i)));
-}
-
-/// Bending that is damped moves no free cable as a whole; what it did to the angular momentum is given back as a rigid body's
-/// motion, but no more energy than it took. Returns that [J].
-double CableStepper::restore_angular_momentum(const Substep& s, const std::vector<double>& masses) {
-  const Vector3 taken = s.h * bending_.damping_torque(displacement_);
-  if (taken.isZero(0)) return 0;
-  const RigidMotion missing = rigid_motion(masses, position_, Vector3::Zero(), -taken);
-  double along = 0, square = 0;  // a share of it adds share * along + share^2 * square [J]
-  for (int i = 0; i <= segments_; ++i) {
-    const Vector3 given = missing.at(get(position_, i));
-    along += masses[i] * given.dot(get(end_velocity_, i));
-    square += 0.5 * masses[i] * given.squaredNorm();
-  }
-  const double work = std::max(0.0, bending_.damping_work(displacement_));
-  double share = 1;
-  if (along + square > work) share = (std::sqrt(along * along + 4 * square * work) - along) / (2 * square);
-  for (int i = 0; i <= segments_; ++i) set(end_velocity_, i, get(end_velocity_, i) + share * missing.at(get(position_, i)));
-  return share * (along + share * square);
-}
-
-/// Finds motion that the substep has not resolved: it is taken out of the velocities, or the next substeps damp it.
-void CableStepper::quieten(const Substep& s, CableState& state, SubstepResult& result) {
-  // Its spin is a part of the angular momentum that a free rod keeps. One that was let go is not damped any longer.
-  if (rod_.active() && s.boundary.nodes.empty()) return begin_anew(state.unresolved);
-  if (!cleaner_.finds_unresolved(s.treatment, system_.movable, acceleration_, state)) return;
-  if (s.treatment == Treatment::damping || s.scheme != Scheme::conserving) {
-    state.unresolved.damped = s.scheme == Scheme::conserving ? damped_substeps : damped_substeps - 1;
-    return;
-  }
-  take_out_unresolved(s, state, result);
-}
-
-void CableStepper::clean(const Substep& s, const std::vector<double>& start_multiplier, CableState& state) {
-  SubstepResult unused;
-  begin(s, state, unused);
-  displacement_.assign(segments_ + 2, 0.0);
-  end_velocity_ = velocity_;
-  evaluate(s, state);
-  for (int i = 0; i < segments_; ++i) start_density_[i] = start_multiplier[i] / length_[i];
-  take_out_unresolved(s, state, unused);
-}
-
-void CableStepper::take_out_unresolved(const Substep& s, CableState& state, SubstepResult& result) {
-  assemble_for_velocities();
-  factor_segments();
-  std::fill(growth_.begin(), growth_.end(), 0.0);
-  for (const GrowingSegment& growing : s.boundary.growing)
-    growth_[growing.segment] = target_length_[growing.segment] * growing.growth;
-  for (std::size_t k = 0; k < flows_.size(); ++k) {
-    const double rate = s.boundary.flows[k].rate;
-    growth_[flows_[k].before] -= target_length_[flows_[k].before] * rate;
-    growth_[flows_[k].after] += target_length_[flows_[k].after] * rate;
-  }
-  cleaner_.load(s.h, s.model, state, inertia_, segment_, end_velocity_, growth_, system_);
-  for (const int i : both_held_) system_.gap[i] = 0;
-  if (rod_.active()) std::fill(rod_.torque().begin(), rod_.torque().end(), 0.0);
-  solve_segments();
-  // What is taken out is what forces in the cable do: its holders feel them, too.
-  double work = 0;
-  for (const HeldNode& held : s.boundary.nodes) work -= 0.5 * s.h * corrected_load(held.node).dot(held.displacement);
-  // At a winch, the material's way is that of what it holds.
-  double of_winches = 0;
-  if (winch_node_ >= 0) of_winches -= 0.5 * s.h * corrected_load(winch_node_).dot(material_way_);
-  work += of_winches;
-  const double share = cleaner_.take_out(s.h, work, s.boundary.nodes, correction(), position_, state);
-  for (HeldNode& target : s.boundary.nodes) target.mend(0.5 * share * s.h * corrected_load(target.node), 2);
-  result.balance.work.winches += share * of_winches;
-  result.balance.dissipated.unresolved += share * of_winches;
-  if (rod_.active()) result.balance.dissipated.unresolved += rod_.calm_spin(state);
-}
-
-/// The matrix at the end of the substep, of motion about it: without contacts and fluid, tension being the mean of two substeps,
-/// as it alternates, too, and compression no stiffness.
-void CableStepper::assemble_for_velocities() {
-  for (int i = 0; i < segments_; ++i) start_density_[i] = std::max(0.0, 0.5 * (start_density_[i] + tension_density_[i]));
-  assemble_segments(0.5, start_density_, segment_);
-  if (bending_.active()) bending_.add_stiffness(system_);
-  if (rod_.active()) rod_.assemble(segment_, start_density_);
-  // A tension that is kept does not resist motion along the segment.
-  if (winch_.segment >= 0 && keeps_tension(winch_.segment))
-    system_.compliance[winch_.segment] = 1 / (length_rate_regularisation * inertia_[winch_.segment]);
-}
-
-/// What the held nodes' equations of motion lack is what their holders supply.
-void CableStepper::react(const Substep& s, const std::vector<double>& masses) {
-  for (HeldDirection& target : s.boundary.directions) target.torque.setZero();
-  if (rod_.active()) rod_.finish(displacement_, segment_, s.boundary);
-  if (bending_.is_damped()) with_material([&] { bending_loss_ = bending_.find_loss(displacement_); });
-  if (bending_.active() && winch_node_ >= 0) {
-    bending_force_.assign(segments_ + 2, 0.0);
-    with_material([&] { bending_.add_segment_forces(displacement_, bending_force_); });
-  }
-  if (s.boundary.nodes.empty()) return;
-  for (HeldNode& target : s.boundary.nodes) {
-    const int i = target.node;
-    const double mass = masses[i];
-    target.follow(mass, get(velocity_, i), get(displacement_, i), s.h);
-    // What is applied to the node goes to its holder as it is.
-    const Vector3 applied = s.boundary.load_on(i);
-    const Vector3 load =
-        corrected_load(i) - applied + s.inertia() * mass / s.h * (get(displacement_, i) / s.h - get(velocity_, i));
-    target.force = mean_force(s.scheme, load, target.lasting_force);
-    if (!applied.isZero(0)) target.force += applied;
-    if (!s.statics) target.force -= mass * (target.velocity - get(velocity_, i)) / s.h;
-    if (!flows_.empty()) target.force += flow_reaction(s, i);
-  }
-  if (bending_.active()) with_material([&] { bending_.react(displacement_, s.boundary.directions); });
-  if (twist_.active()) twist_.react(s.boundary);
-  for (HeldDirection& target : s.boundary.directions) target.torque = mean_force(s.scheme, target.torque, target.lasting_torque);
-}
-
 /// The force of bending and twist along a segment [N].
 double CableStepper::force_along(int i) const {
   const double density = tension_density_[i] - multiplier_correction()[i];  // that of the pull, before the last correction
   const Vector3 middle = get(middle_, i);
   return (get(segment_force_, i) - density * middle).dot(middle) / target_length_[i];
-}
-
-/// The load on a node after the last correction, to first order: its row of the matrix times the solution is gone.
-Vector3 CableStepper::corrected_load(int i) const {
-  Vector3 load = get(system_.load, i);
-  for (const Flow& flow : flows_) {
-    const int place = i - flow.first_node();
-    if (place >= 0 && place < static_cast<int>(flow.column.size())) load += flow.correction * flow.column[place];
-  }
-  if (rod_.active()) {
-    const VectorArray& force = rod_.elimination().force();
-    if (i > 0) load -= get(force, i - 1);
-    if (i < segments_) load += get(force, i);
-    return load;
-  }
-  const VectorArray& delta = solver_.displacement();
-  const std::vector<double>& multiplier = solver_.multiplier();
-  if (i > 0) load -= system_.first[i - 1] * get(delta, i - 1) + multiplier[i - 1] * get(system_.direction, i - 1);
-  if (i < segments_) load -= system_.first[i] * get(delta, i + 1) - multiplier[i] * get(system_.direction, i);
-  if (system_.stiffened) load -= system_.added_load(i, delta);
-  if (!bending_.active()) return load;
-  if (i > 1) load -= system_.second[i - 2] * get(delta, i - 2);
-  if (i + 1 < segments_) load -= system_.second[i] * get(delta, i + 2);
-  return load;
 }
 
 /// The largest strain.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -52,7 +53,7 @@ class CableStepper {
   void take_back(double part);  ///< of the last correction
   /// `struck`: forces from outside have changed velocities abruptly.
   void finish(const Substep& substep, bool struck, CableState& state, SubstepResult& result);
-  // For holders that move as the cable lets them, between `factor` and `correct`
+  // For holders that move as the cable lets them, between `factor` and `correct`: rod/cable_holders.cpp
   /// Takes over where the holders are at the end of the substep.
   void follow_holders(const Boundary& boundary);
   /// What the cable exerts on its holders in the present iterate, without the inertia of the nodes that they hold; `corrected`:
@@ -62,7 +63,7 @@ class CableStepper {
   void add_moved(const Boundary& boundary, const HolderMotion& motion);
   /// What the cable exerts on its holders where they move so and nothing else loads it; the solution stays as it is.
   void respond(const Boundary& boundary, const HolderMotion& motion, HolderLoads& loads);
-  // Of velocities, once the substep is finished: begin; solve; read; respond; add moved; finish
+  // Of velocities, once the substep is finished: begin; solve; read; respond; add moved; finish. See rod/cable_velocities.cpp
   /// The linear system is that of impulses which end all change of length of inextensible segments but that of rest lengths.
   void begin_projection(const Substep& substep, const CableState& state);
   /// On the holders [N s], after the last solution.
@@ -261,5 +262,15 @@ class CableStepper {
   std::vector<double> pivot_, off_, impulse_;  // segments
   std::vector<double> growth_;                 // segments: rate of half the square of the length [m^2/s]
 };
+
+/// At a winch what bends moves with the material, not with the node.
+template <class Operation>
+void CableStepper::with_material(const Operation& operation) {
+  const int node = std::max(winch_node_, 0);
+  const Vector3 displacement = get(displacement_, node);
+  if (winch_node_ >= 0) set(displacement_, node, displacement + material_way_);
+  operation();
+  set(displacement_, node, displacement);
+}
 
 }  // namespace verlet_cable

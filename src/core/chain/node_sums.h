@@ -6,6 +6,14 @@
 
 namespace verlet_cable {
 
+/// Adds the first `count` elements of a list to those of another one.
+inline void add(const std::vector<double>& more, int count, std::vector<double>& sum) {
+  const double* from = more.data();
+  double* to = sum.data();
+#pragma GCC ivdep
+  for (int i = 0; i < count; ++i) to[i] += from[i];
+}
+
 /// Of the first `count` elements of two lists.
 inline double dot(const std::vector<double>& a, const std::vector<double>& b, int count) {
   double sum = 0;
