@@ -214,7 +214,6 @@ void update_targets(int index, State& state, CableOutcome& outcome, std::vector<
   const bool jumps = following.jumping_node >= 0;
   if (following.started || jumps) follow_abrupt_holders(index, following, state, outcome);
   if (!jumps) buckle_straight_columns(index, state);
-  seed_pressed_columns(index, state);
   if (!were_shown && !following.started && !jumps) return;
   const double change = follow_energy_of_cable(index, state, directions);
   outcome.change += change;

@@ -34,8 +34,6 @@ constexpr double seed_slope = 6e-5;
 constexpr double seed_straightness = 1e-7;
 /// Of the bow that a substep needs: what is less aside has no room.
 constexpr double part_of_room = 0.1;
-/// [s] What grows more slowly than by a factor of e in it is not seen.
-constexpr double noticed_growth = 1;
 /// Of a span's length: a bow for more slack is no start for a step in which gravity pulls it aside, too.
 constexpr double largest_slack_aside = 0.03;
 
@@ -361,22 +359,6 @@ void buckle_straight_columns(int index, State& state) {
     if (slack == 0) return;
     if (slack > largest_slack_aside * column.length && !gravity_across(column, cable, state).isZero(0)) return;
     bend(column, slack, time, waves_of_sudden_bow(*cable.model, cable.state, column, time), index, state);
-  });
-}
-
-void seed_pressed_columns(int index, State& state) {
-  SimulatedCable& cable = state.cables[index];
-  const std::vector<KinematicTarget>& targets = state.cable_progress[index].targets.nodes;
-  const auto is_told_at = [&](int node) {
-    return std::any_of(targets.begin(), targets.end(),
-                       [&](const KinematicTarget& target) { return target.node == node && is_told(target, state); });
-  };
-  for_each_straight_span(index, state, seed_straightness, [&](const StraightSpan& span) {
-    if (is_told_at(span.first) && is_told_at(span.last)) return;
-    if (is_surely_stable_for(noticed_growth, span, cable.state, [&](int i) { return cable.state.tension[i]; })) return;
-    const auto first = cable.state.tension.begin() + span.first, last = cable.state.tension.begin() + span.last;
-    LateralStiffness stiffness(*cable.model, cable.state, span, {first, last});
-    if (!stiffness.is_stable_for(noticed_growth)) seed(span, stiffness, index, state);
   });
 }
 

@@ -17,11 +17,6 @@ namespace verlet_cable {
 ///   energy is a tiny part of what is stored in its compression: from there it buckles by itself.
 void buckle_straight_columns(int cable, State& state);
 
-/// What the last substep pressed together so that it would buckle, and is exactly straight, gets a seed of that: it is bent by so
-/// little that this neither makes energy nor changes lengths. Spans to bodies, guides and ends that nothing holds: those between
-/// holders that move as they are told are judged by where these will be.
-void seed_pressed_columns(int cable, State& state);
-
 /// What is to become of a substep whose solution may be one that does not last.
 enum class GivesWay {
   no,       ///< it lasts
