@@ -19,34 +19,28 @@ constexpr double beyond_singular = 1.5;
 
 LateralStiffness::LateralStiffness(const CableModel& model, const CableState& state, const StraightSpan& span,
                                    const std::vector<double>& tension)
-    : held_before_(span.free_at_first ? 0 : 1),
-      held_after_(span.free_at_last ? 0 : 1),
-      unknowns_(span.segments() + 1 - held_before_ - held_after_),
-      masses_(state.masses.begin() + span.first + held_before_, state.masses.begin() + span.last + 1 - held_after_) {
+    : unknowns_(span.segments() - 1), masses_(state.masses.begin() + span.first + 1, state.masses.begin() + span.last) {
   for (std::vector<double>* a : {&diagonal_, &next_, &second_, &pivot_, &lower_, &lower_second_}) a->assign(unknowns_, 0.0);
   const CableMaterials materials(model, state);
   for (int k = 0; k < span.segments(); ++k) {
     const double stiffness = tension[k] / state.rest_lengths[span.first + k];
-    const int node = k - held_before_;
-    add(node, node, stiffness);
-    add(node + 1, node + 1, stiffness);
-    add(node, node + 1, -stiffness);
+    add(k - 1, k - 1, stiffness);
+    add(k, k, stiffness);
+    add(k - 1, k, -stiffness);
     rounding_ =
         std::max(rounding_, rounding_of_stiffness * std::abs(stiffness) / state.masses[std::max(span.first + k, span.first + 1)]);
   }
   for (int i = span.first + 1; i < span.last; ++i) {
     const double before = state.rest_lengths[i - 1], after = state.rest_lengths[i];
     const double stiffness = joint_material(materials, state, i).bending_stiffness.smallest();
-    add_joint(i - span.first - held_before_, stiffness / state.bending_length(i, 0.5 * (before + after)), 1 / before, 1 / after);
+    add_joint(i - span.first - 1, stiffness / state.bending_length(i, 0.5 * (before + after)), 1 / before, 1 / after);
   }
   const auto stiffness_at_clamp = [&](int node, int segment) {
     return materials[segment].bending_stiffness.smallest() / state.bending_length(node, 0.5 * state.rest_lengths[segment]);
   };
-  if (span.clamped_at_first)
-    add_joint(-held_before_, stiffness_at_clamp(span.first, span.first), 0, 1 / state.rest_lengths[span.first]);
+  if (span.clamped_at_first) add_joint(-1, stiffness_at_clamp(span.first, span.first), 0, 1 / state.rest_lengths[span.first]);
   if (span.clamped_at_last)
-    add_joint(unknowns_ - 1 + held_after_, stiffness_at_clamp(span.last, span.last - 1), 1 / state.rest_lengths[span.last - 1],
-              0);
+    add_joint(unknowns_, stiffness_at_clamp(span.last, span.last - 1), 1 / state.rest_lengths[span.last - 1], 0);
 }
 
 /// Stiffness [N m] against e = after (w_(i+1) - w_i) - before (w_i - w_(i-1)).
@@ -112,8 +106,8 @@ std::vector<double> LateralStiffness::growing_shape() {
   factor(beyond_singular * to);
   std::vector<double> shape = masses_;
   solve(shape);
-  shape.insert(shape.begin(), held_before_, 0.0);
-  shape.insert(shape.end(), held_after_, 0.0);
+  shape.insert(shape.begin(), 0);
+  shape.push_back(0);
   return shape;
 }
 

@@ -8,11 +8,10 @@
 
 namespace verlet_cable {
 
-/// A straight part of a cable between two nodes.
+/// A straight part of a cable between two held nodes.
 struct StraightSpan {
   int first = 0, last = 0;                                 ///< nodes
   bool clamped_at_first = false, clamped_at_last = false;  ///< directions are held there
-  bool free_at_first = false, free_at_last = false;        ///< nothing holds these nodes
 
   int segments() const { return last - first; }
 };
@@ -30,8 +29,8 @@ class LateralStiffness {
   bool is_stable() { return factor(rounding_); }
   /// Whether no shape grows by a factor of more than e in a time [s].
   bool is_stable_for(double time) { return factor(std::max(rounding_, 1 / (time * time))); }
-  /// Across the span, of an unstable one: nodes of the span, first and last too, which are 0 where they are held; of what grows,
-  /// most of what grows fastest. Its size is arbitrary.
+  /// Across the span, of an unstable one: nodes of the span, first and last too, which are 0; of what grows, most of what grows
+  /// fastest. Its size is arbitrary.
   std::vector<double> growing_shape();
 
  private:
@@ -42,8 +41,7 @@ class LateralStiffness {
   void solve(std::vector<double>& load) const;
 
   double rounding_ = 0;                               // [1/s^2] of an eigenvalue: what just stands, stands
-  int held_before_, held_after_;                      // nodes at the ends of the span that do not move: 0 or 1
-  int unknowns_;                                      // nodes of the span that move
+  int unknowns_;                                      // inner nodes of the span
   std::vector<double> masses_;                        // [kg]
   std::vector<double> diagonal_, next_, second_;      // of the matrix: row i, and between i and i + 1, i + 2 [N/m]
   std::vector<double> pivot_, lower_, lower_second_;  // of its factors

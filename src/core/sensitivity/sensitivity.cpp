@@ -189,10 +189,11 @@ StepResult Sensitivity::step(World& world, const BoundaryInputs& inputs) {
       return contact.cable == cable || contact.other_cable == cable;
     };
     const std::vector<SimulatedContact>& contacts = w.findings.contacts;
+    const CableOutcome& outcome = w.cable_outcomes.value[cable];
     std::string problem;
-    if (std::any_of(contacts.begin(), contacts.end(), is_of_cable))
+    if (outcome.gave_way || std::any_of(contacts.begin(), contacts.end(), is_of_cable))
       problem = "it touches something";
-    else if (w.cable_outcomes.value[cable].result.substeps > 1)
+    else if (outcome.result.substeps > 1)
       problem = "its step is split into substeps";
     else
       problem = c.end_step(w.state);

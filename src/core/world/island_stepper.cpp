@@ -359,8 +359,11 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   }
   BodySystem* const bodies = island.bodies.empty() ? nullptr : &workspace_.body_system;
   if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
-  if (converged && bodies != nullptr && !touching)
-    converged = advance_bodies(from, tolerated) || advance_straight_bodies(island, from, to, touching_scheme, tolerated);
+  if (converged && bodies != nullptr && !touching) {
+    converged = (solve_bodies() || solve_straight_bodies(island, from, to, touching_scheme)) &&
+                (tolerated || !columns_give_way(from));
+    if (converged) take_solved_bodies();
+  }
   contact_work_ = 0;
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;
@@ -400,7 +403,7 @@ bool IslandStepper::columns_give_way(double part) {
     if (gives == GivesWay::no) continue;
     give_way = true;
     if (gives == GivesWay::shorter) continue;
-    bends_columns_ = true;
+    bends_columns_ = outcomes_[p.cable].gave_way = true;
     account_for_edit(energy_at(p.cable, part) - before, outcomes_[p.cable].balance);
   }
   return give_way;

@@ -17,6 +17,7 @@ struct CableOutcome {
   StepResult result;
   std::vector<Jump> jumps;    ///< that the step found to be over
   int breaking_segment = -1;  ///< -1: none
+  bool gave_way = false;      ///< straight columns of it were bent, as something that touches or holds it presses them together
   EnergyBalance balance;      ///< of the step
   double change = 0;          ///< [J] of its energy
 };
@@ -103,8 +104,9 @@ class IslandStepper {
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void begin_bodies(const Island& island, double from, double to, Scheme scheme);
-  bool advance_bodies(double from, bool tolerated);
-  bool advance_straight_bodies(const Island& island, double from, double to, Scheme scheme, bool tolerated);
+  bool solve_bodies();
+  bool solve_straight_bodies(const Island& island, double from, double to, Scheme scheme);
+  void take_solved_bodies();
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void update_body_targets(const Island& island, IslandOutcome& found);

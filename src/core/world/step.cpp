@@ -85,6 +85,7 @@ void World::Implementation::count_step() {
     outcome.result = {};
     outcome.balance = {};
     outcome.change = 0;
+    outcome.gave_way = false;
   }
 }
 

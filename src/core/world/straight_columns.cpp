@@ -238,26 +238,22 @@ void bend(const Column& column, double slack, double time, double waves, int ind
   start_anew(before, index, state);
 }
 
-/// Calls `f` with each span, about as straight, between what holds a cable, whatever that is, and its ends.
+/// Calls `f` with each span, about as straight, between what holds a cable, whatever that is, and its ends: what presses on an
+/// end keeps it where it is.
 template <class Function>
 void for_each_straight_span(int index, const State& state, double tolerance, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
-  const auto visit = [&](int first, int last, bool held_at_first, bool held_at_last) {
+  const auto visit = [&](int first, int last) {
     if (last - first < 2 || !is_straight(cable, first, last, tolerance)) return;
-    StraightSpan span{first, last, is_clamped(first, targets), is_clamped(last, targets)};
-    span.free_at_first = !held_at_first;
-    span.free_at_last = !held_at_last;
-    f(span);
+    f(StraightSpan{first, last, is_clamped(first, targets), is_clamped(last, targets)});
   };
   int from = 0;
-  bool held = false;
   for (const KinematicTarget& target : targets.nodes) {
-    visit(from, target.node, held, true);
+    visit(from, target.node);
     from = target.node;
-    held = true;
   }
-  visit(from, cable.segments(), held, false);
+  visit(from, cable.segments());
 }
 
 /// Whether compression surely is too small for anything to grow by a factor of more than e in a time [s], after Gershgorin.
@@ -317,13 +313,11 @@ bool lies_against(const StraightSpan& span, int cable, const std::vector<Touch>&
 
 GivesWay gives_way(const Participant& p, const std::vector<Touch>& touches, State& state) {
   bool gives = false, bent = false;
-  for_each_straight_span(p.cable, state, pressed_straightness, [&](StraightSpan span) {
+  for_each_straight_span(p.cable, state, pressed_straightness, [&](const StraightSpan& span) {
     const auto tension_at = [&](int i) { return p.stepper->tension(i); };
     if (is_surely_stable_for(p.substep.h, span, *p.state, tension_at) || lies_against(span, p.cable, touches, state)) return;
     std::vector<double> tension;
     for (int i = span.first; i < span.last; ++i) tension.push_back(tension_at(i));
-    // What presses on an end that nothing holds keeps it where it is.
-    span.free_at_first = span.free_at_last = false;
     const SimulatedCable& cable = state.cables[p.cable];
     LateralStiffness stiffness(*cable.model, cable.state, span, tension);
     if (stiffness.is_stable_for(p.substep.h)) return;
