@@ -173,6 +173,7 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
   for (std::size_t i = 0; i < length_index; ++i) parameters[i].unresolved = unresolved_material;
   parameters[length_index].unresolved = unresolved_length * settings.length;
   for (std::size_t i = stiff_index; i < curvature_index; ++i) parameters[i].unresolved = unresolved_stiff;
+  for (std::size_t i = curvature_index; i < marker_index; ++i) parameters[i].has_common_width = true;
   if (settings.centre_line) add_marker_parameters(settings, parameters);
   return parameters;
 }

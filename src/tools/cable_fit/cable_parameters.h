@@ -37,6 +37,8 @@ struct Parameter {
   double likely = 0;
   int relative_to = -1;
   double expected = 0;
+  /// One of many that are alike: how far they are from what is expected is learned from the recordings, `likely` at most.
+  bool has_common_width = false;
   /// Standard deviation of what the simulation, in segments and time steps, leaves of it even where recordings have no noise.
   double unresolved = 0;
 };

@@ -6,11 +6,14 @@
 #include <cmath>
 #include <mutex>
 #include <random>
+#include <set>
 
+#include "bent_places.h"
 #include "core/world/parallel_for.h"
 #include "input_errors.h"
 #include "prediction.h"
 #include "prediction_error.h"
+#include "supposed.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -23,11 +26,15 @@ constexpr double due_to_noise = 1.2;
 constexpr double longest_step = 0.3, far = 0.25;  // decades
 /// Of a standard deviation: a step this short ends the search.
 constexpr double short_step = 0.1;
-constexpr double singular = 1e-12;  ///< part of the largest eigenvalue of scaled normal equations
 /// [decades / rad] What noise in a hand's direction leaves in logarithmic parameters beyond all that is corrected, as measured
 /// with recordings of a known rod (fit_coverage).
 constexpr double of_direction = 0.15;
-constexpr int roll_pairs = 2, pairs = 12;  ///< of samples: of the hands' roll, of all else
+constexpr int pairs = 4;  ///< of samples
+/// Slopes by the inputs are found anew at every so manieth step.
+constexpr int steps_with_slopes = 2;
+/// A width that many parameters have in common is this part of what is likely at least.
+constexpr double least_width = 0.01;
+constexpr int width_rounds = 100;
 /// Derivatives are good enough with so many segments.
 constexpr int segments_for_slopes = 24;
 
@@ -68,22 +75,6 @@ Eigen::VectorXd compared(const Prediction& prediction, const Recording& recordin
   return Eigen::Map<Eigen::VectorXd>(sums.data(), sums.size());
 }
 
-/// The markers' places with which a prediction's distances between neighbouring ones are as measured: those along the chords cut
-/// the bends. `places`: by the measured distances; `predicted_places`: where predictions have them.
-std::vector<double> places_along(const std::vector<double>& places, const std::vector<double>& predicted_places,
-                                 const std::vector<Prediction>& predictions) {
-  std::vector<double> along{0};
-  for (std::size_t marker = 1; marker < places.size(); ++marker) {
-    std::vector<double> chords;
-    for (const Prediction& prediction : predictions)
-      for (const std::vector<Vector3>& row : prediction.positions) chords.push_back((row[marker] - row[marker - 1]).norm());
-    const double arc = predicted_places[marker] - predicted_places[marker - 1], chord = median(std::move(chords));
-    along.push_back(along.back() + (places[marker] - places[marker - 1]) * (chord > 0 ? arc / chord : 1));
-  }
-  for (double& place : along) place /= along.back();
-  return along;
-}
-
 /// The estimate, as it is improved step by step.
 class Search {
  public:
@@ -103,6 +94,8 @@ class Search {
     noise_variance_ = variance;
     mean_variance_ = variance / rows;
     alike_ = alike / rows;
+    for (Eigen::Index k = 0; k < parameters(); ++k) (problem.parameters[k].has_common_width ? common_ : single_).push_back(k);
+    if (!common_.empty()) likely_width_ = problem.parameters[common_.front()].likely;
     pull_ = Eigen::VectorXd::Zero(parameters());
     correction_ = Eigen::VectorXd::Zero(parameters());
     place_markers();
@@ -110,12 +103,12 @@ class Search {
 
   Estimate run(int most_steps) {
     for (int step = 0; step < most_steps; ++step) {
-      if (step == 0 || went_far()) find_input_slopes();
+      if (step % steps_with_slopes == 0 || went_far()) find_input_slopes();
       find_differences();
       find_slopes();
       if (improve()) break;
     }
-    correct_for_curvature();
+    correct_for_what_is_supposed();
     return {values_, confidence(), usual_.settings.marker_places};
   }
 
@@ -149,30 +142,30 @@ class Search {
     Matrices matrices;
   };
 
-  /// Those of each recording by a column of changes, which `change` makes of the values and the input's errors.
+  /// Those of each recording by so many changes, which `change` makes of the values and of the recording's input.
   template <class Change>
-  Slopes slopes(const Problem& problem, const Vectors& at, const std::vector<Eigen::Index>& counts, const Change& change) const {
-    std::vector<std::pair<std::size_t, Eigen::Index>> all;
-    for (std::size_t i = 0; i < recordings(); ++i)
-      for (Eigen::Index k = -1; k < counts[i]; ++k) all.emplace_back(i, k);
-    Vectors columns(all.size());
-    std::vector<double> steps(all.size(), 1.0);
+  Slopes slopes(const std::vector<double>& at, const Vectors& at_errors, Eigen::Index count, const Change& change) const {
+    const auto columns_each = static_cast<std::size_t>(count + 1);
+    Vectors columns(recordings() * columns_each);
+    std::vector<double> steps(columns.size(), 1.0);
     std::mutex mutex;
-    parallel_for(all.size(), [&](std::size_t n) {
-      const auto [recording, k] = all[n];
-      std::vector<double> values = values_;
-      Eigen::VectorXd errors = at[recording];
-      if (k >= 0) steps[n] = change(k, values, errors);
-      columns[n] = compared(predicted(problem, 1, recording, values, errors), problem.recordings[which_[recording]]);
+    parallel_for(columns.size(), [&](std::size_t n) {
+      const std::size_t recording = n / columns_each, column = n % columns_each;
+      std::vector<double> values = at;
+      Eigen::VectorXd errors = at_errors[recording];
+      if (column > 0) steps[n] = change(recording, static_cast<Eigen::Index>(column - 1), values, errors);
+      columns[n] = compared(predicted(coarse_, 1, recording, values, errors), coarse_.recordings[which_[recording]]);
       const std::lock_guard<std::mutex> lock(mutex);
-      problem.simulated();
+      coarse_.simulated();
     });
     Slopes result;
-    std::size_t n = 0;
     for (std::size_t i = 0; i < recordings(); ++i) {
-      const Eigen::VectorXd& base = result.differences.emplace_back(columns[n++]);
-      Eigen::MatrixXd& matrix = result.matrices.emplace_back(base.size(), counts[i]);
-      for (Eigen::Index k = 0; k < counts[i]; ++k, ++n) matrix.col(k) = (columns[n] - base) / steps[n];
+      const Eigen::VectorXd& base = result.differences.emplace_back(columns[i * columns_each]);
+      Eigen::MatrixXd& matrix = result.matrices.emplace_back(base.size(), count);
+      for (Eigen::Index k = 0; k < count; ++k) {
+        const std::size_t n = i * columns_each + static_cast<std::size_t>(k) + 1;
+        matrix.col(k) = (columns[n] - base) / steps[n];
+      }
     }
     return result;
   }
@@ -187,33 +180,60 @@ class Search {
   void find_input_slopes() {
     input_slopes_at_ = values_;
     input_squares_.clear();
-    std::vector<Eigen::Index> counts;
-    for (const InputErrors& input : inputs_) counts.push_back(input.count());
-    input_slopes_ = slopes(coarse_, errors_, counts, [](Eigen::Index k, std::vector<double>&, Eigen::VectorXd& errors) {
-                      errors[k] += 1;
-                      return 1.0;
-                    }).matrices;
+    input_slopes_.clear();
+    for (std::size_t i = 0; i < recordings(); ++i) input_slopes_.push_back(input_slopes(i));
     for (const Eigen::MatrixXd& matrix : input_slopes_) input_squares_.emplace_back(matrix.transpose() * matrix);
   }
 
-  /// By the parameters, with inputs of such errors.
-  Slopes slopes_at(const Vectors& errors) const {
-    return slopes(coarse_, errors, std::vector<Eigen::Index>(recordings(), parameters()),
-                  [&](Eigen::Index k, std::vector<double>& values, Eigen::VectorXd&) {
-                    const Parameter& parameter = coarse_.parameters[k];
-                    const double step = values[k] + parameter.step <= parameter.highest ? parameter.step : -parameter.step;
-                    values[k] += step;
-                    return step;
-                  });
+  /// Of one recording. A prediction goes on from where its input differs first.
+  Eigen::MatrixXd input_slopes(std::size_t recording) const {
+    const InputErrors& input = inputs_[recording];
+    const SceneDesc scene = cable_scene(coarse_.settings, values_);
+    const Markers markers = markers_of(coarse_.settings, values_);
+    const auto differs_after = [&](Eigen::Index k) { return input.first_row(k) - rows_ahead; };
+    std::set<int> rows;
+    for (Eigen::Index k = 0; k < input.count(); ++k)
+      if (differs_after(k) >= 0) rows.insert(differs_after(k));
+    const Waypoints waypoints = predict_by({rows.begin(), rows.end()}, scene, markers, input.changed(errors_[recording]));
+    const Recording& measured = coarse_.recordings[which_[recording]];
+    const Eigen::VectorXd base = compared(waypoints.prediction, measured);
+    coarse_.simulated();
+    Eigen::MatrixXd result(base.size(), input.count());
+    std::mutex mutex;
+    parallel_for(static_cast<std::size_t>(input.count()), [&](std::size_t n) {
+      const auto k = static_cast<Eigen::Index>(n);
+      Eigen::VectorXd errors = errors_[recording];
+      errors[k] += 1;
+      const Input changed = input.changed(errors);
+      const auto waypoint = static_cast<std::size_t>(std::distance(rows.begin(), rows.find(differs_after(k))));
+      const Prediction prediction =
+          differs_after(k) >= 0 ? predict_on(waypoints, waypoint, scene, markers, changed) : predict(scene, markers, changed);
+      result.col(k) = compared(prediction, measured) - base;
+      const std::lock_guard<std::mutex> lock(mutex);
+      coarse_.simulated();
+    });
+    return result;
   }
 
-  void find_slopes() { slopes_ = slopes_at(errors_).matrices; }
+  double step_of(Eigen::Index k) const {
+    const Parameter& parameter = coarse_.parameters[k];
+    return values_[k] + parameter.step <= parameter.highest ? parameter.step : -parameter.step;
+  }
 
-  /// A step of the search goes by tangents, and noise as large as this is felt beyond them. What is measured scatters about the
-  /// truth: where predictions bend away from their tangents, the estimate is off by as much on the average, the other way (Box
-  /// 1971). What is only supposed, the roll of the hands, is itself what scatters: of it, the cost counts as a mean over what is
-  /// possible still. Both by pairs of samples that are opposite, from the normal distribution of the estimate.
-  void correct_for_curvature() {
+  void find_slopes() {
+    slopes_ =
+        slopes(values_, errors_, parameters(), [&](std::size_t, Eigen::Index k, std::vector<double>& values, Eigen::VectorXd&) {
+          values[k] += step_of(k);
+          return step_of(k);
+        }).matrices;
+  }
+
+  /// The roll of hands and natural curvature are not measured, only supposed to be somewhere about zero: the more of the noise
+  /// they can explain with some material, the likelier it seems. So the likelihood of parameters is what is left when they are
+  /// integrated out (Laplace's approximation), or the cost counts as a mean over what is possible of them. Its gradient differs
+  /// from that of the least cost: by pairs of samples that are opposite, from the normal distribution of what is supposed, while
+  /// all else is as is likeliest with it.
+  void correct_for_what_is_supposed() {
     std::mt19937_64 random(1);
     std::normal_distribution<double> normal(0, 1);
     const auto drawn = [&](Eigen::Index count) {
@@ -221,87 +241,53 @@ class Search {
       for (double& number : numbers) number = normal(random);
       return numbers;
     };
-    std::vector<Eigen::LLT<Eigen::MatrixXd>> solvers;
-    for (std::size_t i = 0; i < recordings(); ++i) solvers.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision());
-    const auto sampled = [&](std::size_t i) -> Eigen::VectorXd { return solvers[i].matrixU().solve(drawn(inputs_[i].count())); };
-    const Vectors most_likely = compared_at({values_}, {errors_}).front();
-    const Vectors bent = bend_of_measured(drawn, sampled, most_likely);
-    find_pull_of_roll(sampled, most_likely);
-    for (std::size_t i = 0; i < recordings(); ++i) differences_[i] -= bent[i];
-    const std::vector<double> before = values_;
-    improve();
-    for (Eigen::Index k = 0; k < parameters(); ++k) correction_[k] = values_[k] - before[k];
-  }
+    const Normal equations = normal_equations(variance_);
+    const Prior prior(coarse_.parameters, values_);
+    const Eigen::MatrixXd information = equations.information + prior.slopes.transpose() * prior.slopes;
+    const auto commons = static_cast<Eigen::Index>(common_.size()), singles = static_cast<Eigen::Index>(single_.size());
+    const Eigen::LLT<Eigen::MatrixXd> common_solver(information(common_, common_));
+    // How parameters change along with each of the single ones.
+    Eigen::MatrixXd along = Eigen::MatrixXd::Zero(parameters(), singles);
+    along(single_, Eigen::all) = Eigen::MatrixXd::Identity(singles, singles);
+    if (commons > 0) along(common_, Eigen::all) = -common_solver.solve(information(common_, single_));
+    std::vector<Supposed> rolls;
+    for (std::size_t i = 0; i < recordings(); ++i)
+      rolls.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision(), inputs_[i].roll_count());
 
-  /// By how much predictions are off on the average as parameters and what is measured of the input are.
-  template <class Drawn, class Sampled>
-  Vectors bend_of_measured(const Drawn& drawn, const Sampled& sampled, const Vectors& most_likely) const {
-    const Step here = step(variance_);
-    const Eigen::VectorXd scale = scale_of(here.information);
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> parts(scale.asDiagonal() * here.information * scale.asDiagonal());
-    const Eigen::VectorXd deviations =
-        parts.eigenvalues().cwiseMax(singular * parts.eigenvalues().maxCoeff()).cwiseSqrt().cwiseInverse();
-    std::vector<std::vector<double>> values;
-    std::vector<Vectors> errors;
+    Vectors bent;
+    for (const Eigen::VectorXd& of_recording : differences_) bent.push_back(Eigen::VectorXd::Zero(of_recording.size()));
+    const Slopes most_likely = slopes(values_, errors_, 0, [](auto&&...) { return 1.0; });
     for (int pair = 0; pair < pairs; ++pair) {
-      Eigen::VectorXd change = scale.asDiagonal() * (parts.eigenvectors() * (deviations.asDiagonal() * drawn(parameters())));
-      for (Eigen::Index k = 0; k < parameters(); ++k) {
-        const Parameter& parameter = coarse_.parameters[k];
-        const double room = std::max(0.0, std::min(values_[k] - parameter.lowest, parameter.highest - values_[k]));
-        const double most = parameter.logarithmic ? std::min(room, longest_step) : room;
-        change[k] = std::clamp(change[k], -most, most);
-      }
+      Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters());
+      if (commons > 0) change(common_) = Eigen::VectorXd(common_solver.matrixU().solve(drawn(commons)));
       Vectors samples;
-      for (std::size_t i = 0; i < recordings(); ++i) {
-        samples.emplace_back(sampled(i) - here.by_parameters[i] * change);
-        samples.back().tail(inputs_[i].roll_count()).setZero();
+      for (std::size_t i = 0; i < recordings(); ++i)
+        samples.emplace_back(rolls[i].likeliest_with(drawn(inputs_[i].roll_count())) - equations.by_parameters[i] * change);
+      std::array<Slopes, 2> sides;
+      for (const int side : {0, 1}) {
+        const double sign = side == 0 ? 1 : -1;
+        std::vector<double> values = values_;
+        for (Eigen::Index k = 0; k < parameters(); ++k) values[k] += sign * change[k];
+        Vectors errors;
+        for (std::size_t i = 0; i < recordings(); ++i) errors.push_back(errors_[i] + sign * samples[i]);
+        sides[side] = slopes(values, errors, singles,
+                             [&](std::size_t recording, Eigen::Index k, std::vector<double>& changed, Eigen::VectorXd& input) {
+                               const double step = step_of(single_[k]);
+                               for (Eigen::Index j = 0; j < parameters(); ++j) changed[j] += step * along(j, k);
+                               input -= step * (equations.by_parameters[recording] * along.col(k));
+                               return step;
+                             });
       }
-      for (const double sign : {1.0, -1.0}) {
-        values.push_back(values_);
-        errors.push_back(errors_);
-        for (Eigen::Index k = 0; k < parameters(); ++k) values.back()[k] += sign * change[k];
-        for (std::size_t i = 0; i < recordings(); ++i) errors.back()[i] += sign * samples[i];
+      for (std::size_t i = 0; i < recordings(); ++i) {
+        const Eigen::VectorXd tangent = input_slopes_[i] * samples[i] + slopes_[i] * change;
+        pull_(single_) += pull_of(sides[0].matrices[i], sides[1].matrices[i], tangent, variance_) / pairs;
+        bent[i] += (0.5 * (sides[0].differences[i] + sides[1].differences[i]) - most_likely.differences[i]) / pairs;
       }
     }
-    Vectors mean;
-    for (const Eigen::VectorXd& of_recording : most_likely) mean.emplace_back(-of_recording);
-    for (const Vectors& sample : compared_at(values, errors))
-      for (std::size_t i = 0; i < recordings(); ++i) mean[i] += sample[i] / (2 * pairs);
-    return mean;
-  }
-
-  /// The difference of the cost's gradient, and of the predictions.
-  template <class Sampled>
-  void find_pull_of_roll(const Sampled& sampled, const Vectors& most_likely) {
-    pull_ = Eigen::VectorXd::Zero(parameters());
-    for (int pair = 0; pair < roll_pairs; ++pair) {
-      Vectors one, other, change;
-      for (std::size_t i = 0; i < recordings(); ++i) {
-        Eigen::VectorXd sample = sampled(i);
-        change.emplace_back(input_slopes_[i] * sample);
-        sample.head(sample.size() - inputs_[i].roll_count()).setZero();
-        one.emplace_back(errors_[i] + sample);
-        other.emplace_back(errors_[i] - sample);
-      }
-      const Slopes by_one = slopes_at(one), by_other = slopes_at(other);
-      for (std::size_t i = 0; i < recordings(); ++i) {
-        pull_ += (by_one.matrices[i] - by_other.matrices[i]).transpose() * change[i] / (2 * roll_pairs * variance_);
-        differences_[i] += (0.5 * (by_one.differences[i] + by_other.differences[i]) - most_likely[i]) / roll_pairs;
-      }
-    }
-  }
-
-  /// Differences of each recording, for each of some values and errors of the inputs.
-  std::vector<Vectors> compared_at(const std::vector<std::vector<double>>& values, const std::vector<Vectors>& errors) const {
-    std::vector<Vectors> result(values.size(), Vectors(recordings()));
-    std::mutex mutex;
-    parallel_for(values.size() * recordings(), [&](std::size_t n) {
-      const std::size_t which = n / recordings(), i = n % recordings();
-      result[which][i] = compared(predicted(coarse_, 1, i, values[which], errors[which][i]), coarse_.recordings[which_[i]]);
-      const std::lock_guard<std::mutex> lock(mutex);
-      coarse_.simulated();
-    });
-    return result;
+    for (std::size_t i = 0; i < recordings(); ++i) differences_[i] += bent[i];
+    const std::vector<double> before = values_;
+    go(step(normal_equations(variance_)));
+    for (Eigen::Index k = 0; k < parameters(); ++k) correction_[k] = values_[k] - before[k];
   }
 
   /// Errors of segments and of time steps go with the square of their lengths: they cancel from two simulations, one of which has
@@ -322,45 +308,89 @@ class Search {
     });
   }
 
-  /// Normal equations of parameters, with the inputs' errors eliminated, and what a step leaves of the differences.
-  struct Step {
+  /// Of parameters, with the inputs' errors eliminated, without what is known before.
+  struct Normal {
     Eigen::MatrixXd information;
-    Eigen::VectorXd parameters;
-    Vectors errors;
+    Eigen::VectorXd gradient;
     Matrices by_parameters;  ///< of each recording, minus what the errors change with the parameters
-    double left = 0;         ///< [m^2] mean square of the differences after it
+    Vectors alone;           ///< of each recording, minus what they change without
   };
 
   /// `variance` [m^2]: of the means that are compared.
-  Step step(double variance) const {
-    const Prior prior(coarse_.parameters, values_);
-    Step result{prior.slopes.transpose() * prior.slopes, {}, {}, {}, 0};
-    Eigen::VectorXd gradient = prior.slopes.transpose() * prior.values + pull_;
-    Matrices& by_parameters = result.by_parameters;
-    Vectors alone;
+  Normal normal_equations(double variance) const {
+    Normal result{Eigen::MatrixXd::Zero(parameters(), parameters()), Eigen::VectorXd::Zero(parameters()), {}, {}};
     for (std::size_t i = 0; i < recordings(); ++i) {
       const Eigen::MatrixXd &by_input = input_slopes_[i], &slopes = slopes_[i];
       const Eigen::MatrixXd known = inputs_[i].precision();
       const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance + known);
       const Eigen::VectorXd pull = by_input.transpose() * differences_[i] / variance + known * errors_[i];
       const Eigen::MatrixXd coupling = by_input.transpose() * slopes / variance;
-      by_parameters.emplace_back(solver.solve(coupling));
-      alone.emplace_back(solver.solve(pull));
-      result.information += slopes.transpose() * slopes / variance - coupling.transpose() * by_parameters.back();
-      gradient += slopes.transpose() * differences_[i] / variance - coupling.transpose() * alone.back();
+      result.by_parameters.emplace_back(solver.solve(coupling));
+      result.alone.emplace_back(solver.solve(pull));
+      result.information += slopes.transpose() * slopes / variance - coupling.transpose() * result.by_parameters.back();
+      result.gradient += slopes.transpose() * differences_[i] / variance - coupling.transpose() * result.alone.back();
     }
-    const Eigen::VectorXd scale = scale_of(result.information);
-    result.parameters = -(scale.asDiagonal() * (inverse_scaled(result.information, scale) * (scale.asDiagonal() * gradient)));
+    return result;
+  }
+
+  struct Solution {
+    Eigen::VectorXd change, scale;
+    Eigen::MatrixXd inverse;  ///< scaled
+  };
+
+  Solution solution(const Normal& equations) const {
+    const Prior prior(coarse_.parameters, values_);
+    const Eigen::MatrixXd information = equations.information + prior.slopes.transpose() * prior.slopes;
+    const Eigen::VectorXd gradient = equations.gradient + prior.slopes.transpose() * prior.values + pull_;
+    Solution result{{}, scale_of(information), {}};
+    result.inverse = inverse_scaled(information, result.scale);
+    result.change = -(result.scale.asDiagonal() * (result.inverse * (result.scale.asDiagonal() * gradient)));
+    return result;
+  }
+
+  /// How far parameters that have a width in common are from what is expected tells that width: that with which the recordings
+  /// are likeliest (MacKay 1992), not more than what is likely at first.
+  void learn_width(const Normal& equations) {
+    if (common_.empty()) return;
+    double width = likely_width_;
+    for (int round = 0; round < width_rounds; ++round) {
+      for (const Eigen::Index k : common_) coarse_.parameters[k].likely = width;
+      const Solution now = solution(equations);
+      double squares = 0, told = 0;  // sums, of how far they are and how much of that the recordings tell
+      for (const Eigen::Index k : common_) {
+        squares += std::pow(values_[k] + now.change[k] - coarse_.parameters[k].expected, 2);
+        told += 1 - now.inverse(k, k) * now.scale[k] * now.scale[k] / (width * width);
+      }
+      const double next = std::clamp(told > 0 ? std::sqrt(squares / told) : 0, least_width * likely_width_, likely_width_);
+      if (std::abs(next - width) < 1e-3 * width) break;
+      width = next;
+    }
+  }
+
+  struct Step {
+    Eigen::VectorXd parameters;
+    Vectors errors;
+    double left = 0;       ///< [m^2] mean square of the differences after it
+    bool is_short = true;  ///< against what the parameters are uncertain by
+  };
+
+  Step step(const Normal& equations) const {
+    const Solution solved = solution(equations);
+    Step result{solved.change, {}};
     for (Eigen::Index k = 0; k < parameters(); ++k) {
       const Parameter& parameter = coarse_.parameters[k];
-      const double longest = parameter.logarithmic ? longest_step : parameter.likely > 0 ? parameter.likely : infinity;
-      result.parameters[k] = std::clamp(result.parameters[k], -longest, longest);
-      result.parameters[k] = std::clamp(values_[k] + result.parameters[k], parameter.lowest, parameter.highest) - values_[k];
+      const double likely = parameter.has_common_width ? likely_width_ : parameter.likely;
+      const double longest = parameter.logarithmic ? longest_step : likely > 0 ? likely : infinity;
+      double& change = result.parameters[k];
+      change = std::clamp(change, -longest, longest);
+      change = std::clamp(values_[k] + change, parameter.lowest, parameter.highest) - values_[k];
+      const double deviation = solved.scale[k] * std::sqrt(std::max(solved.inverse(k, k), 0.0));
+      result.is_short = result.is_short && std::abs(change) <= short_step * deviation;
     }
     double sum = 0;
     Eigen::Index count = 0;
     for (std::size_t i = 0; i < recordings(); ++i) {
-      result.errors.emplace_back(-alone[i] - by_parameters[i] * result.parameters);
+      result.errors.emplace_back(-equations.alone[i] - equations.by_parameters[i] * result.parameters);
       sum += (differences_[i] + slopes_[i] * result.parameters + input_slopes_[i] * result.errors[i]).squaredNorm();
       count += differences_[i].size();
     }
@@ -370,27 +400,26 @@ class Search {
 
   /// One step. What noise does not explain is an error of the model: alike of so many neighbours, it counts the more.
   bool improve() {
-    variance_ = mean_variance_;
-    Step best = step(variance_);
-    for (int i = 0; i < 10; ++i) {
-      const double wanted = mean_variance_ + alike_ * std::max(0.0, best.left - due_to_noise * mean_variance_);
-      if (wanted < 1.05 * variance_) break;
+    Step best;
+    double wanted = mean_variance_;
+    for (int i = 0; i == 0 || (i < 10 && wanted >= 1.05 * variance_); ++i) {
       variance_ = wanted;
-      best = step(variance_);
+      const Normal equations = normal_equations(variance_);
+      learn_width(equations);
+      best = step(equations);
+      wanted = mean_variance_ + alike_ * std::max(0.0, best.left - due_to_noise * mean_variance_);
     }
-    const Eigen::VectorXd scale = scale_of(best.information);
-    const Eigen::MatrixXd inverse = inverse_scaled(best.information, scale);
-    bool is_short = true;
-    for (Eigen::Index k = 0; k < parameters(); ++k) {
-      is_short = is_short && std::abs(best.parameters[k]) <= short_step * scale[k] * std::sqrt(std::max(inverse(k, k), 0.0));
-      values_[k] += best.parameters[k];
-    }
+    go(best);
+    return best.is_short;
+  }
+
+  void go(const Step& step) {
+    for (Eigen::Index k = 0; k < parameters(); ++k) values_[k] += step.parameters[k];
     for (std::size_t i = 0; i < recordings(); ++i) {
       // What is left is as the linear model says: if the search ends here, nothing is simulated any more.
-      differences_[i] += slopes_[i] * best.parameters + input_slopes_[i] * best.errors[i];
-      errors_[i] += best.errors[i];
+      differences_[i] += slopes_[i] * step.parameters + input_slopes_[i] * step.errors[i];
+      errors_[i] += step.errors[i];
     }
-    return is_short;
   }
 
   std::vector<Confidence> confidence() const {
@@ -429,8 +458,10 @@ class Search {
   std::vector<int> which_;
   std::vector<double> values_, input_slopes_at_;
   std::vector<InputErrors> inputs_;
-  Eigen::VectorXd pull_;                            // of the roll, which is uncertain
-  Eigen::VectorXd correction_;                      // of the parameters, beyond tangents
+  std::vector<Eigen::Index> common_, single_;       // parameters that have a width in common, and others
+  double likely_width_ = 0;                         // of the former, before they are looked at
+  Eigen::VectorXd pull_;                            // of what is supposed, on the parameters
+  Eigen::VectorXd correction_;                      // of the parameters, by it
   Vectors errors_;                                  // a recording
   double noise_variance_ = 0;                       // [m^2] of a coordinate
   double mean_variance_ = 0, variance_ = 0;         // [m^2] of a mean that is compared: by noise, and as it counts
@@ -452,7 +483,7 @@ int most_simulations_with_input_errors(const Problem& problem, const std::vector
   for (const int i : recordings)
     count += most_steps * (InputErrors(problem.recordings[i], problem.inputs[i], variance).count() + 1 +
                            static_cast<Eigen::Index>(problem.parameters.size() + 3)) +
-             2 * roll_pairs * static_cast<Eigen::Index>(problem.parameters.size() + 1) + 2 * pairs + 2;
+             2 * pairs * static_cast<Eigen::Index>(problem.parameters.size() + 1) + 2;
   return static_cast<int>(count);
 }
 

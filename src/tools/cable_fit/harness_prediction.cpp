@@ -358,8 +358,8 @@ Prediction predict_harness(const HarnessSettings& settings, int segments, const 
     for (int branch = 1; branch < static_cast<int>(scene.cables.size()); ++branch)
       turn_curvature(leaving(settings, start, scene, branch), scene.cables[branch]);
   }
-  World world(scene, frames.at(0));
-  return simulate(world, frames, scene.time_step, input.times, [&] { return marker_positions(settings, world); });
+  return simulate(Course(World(scene, frames.at(0)), [&](const World& world) { return marker_positions(settings, world); }),
+                  frames, input.times);
 }
 
 }  // namespace verlet_cable::cable_fit

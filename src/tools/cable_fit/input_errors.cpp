@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -51,11 +52,32 @@ FrameTrack rolled(const FrameTrack& track, const Eigen::VectorXd& angles) {
   return result;
 }
 
+HeldEnds held_ends(const Markers& markers, const Input& input) {
+  const HeldEnds ends = held_ends(markers, input.recording);
+  return {rolled(ends.start, input.rolls[0]), rolled(ends.end, input.rolls[1])};
+}
+
+/// The first row that each coefficient of splines changes.
+std::vector<int> first_rows(const Eigen::MatrixXd& splines) {
+  std::vector<int> rows(static_cast<std::size_t>(splines.cols()), 0);
+  for (Eigen::Index k = 0; k < splines.cols(); ++k)
+    while (splines(rows[k], k) == 0) ++rows[k];
+  return rows;
+}
+
 }  // namespace
 
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Input& input) {
-  const HeldEnds ends = held_ends(markers, input.recording);
-  return predict(cable, markers, input.recording, {rolled(ends.start, input.rolls[0]), rolled(ends.end, input.rolls[1])}, true);
+  return predict(cable, markers, input.recording, held_ends(markers, input), true);
+}
+
+Waypoints predict_by(std::vector<int> rows, const SceneDesc& cable, const Markers& markers, const Input& input) {
+  return predict_by(std::move(rows), cable, markers, input.recording, held_ends(markers, input), true);
+}
+
+Prediction predict_on(const Waypoints& waypoints, std::size_t which, const SceneDesc& cable, const Markers& markers,
+                      const Input& input) {
+  return predict_on(waypoints, which, cable, markers, input.recording, held_ends(markers, input));
 }
 
 InputErrors::InputErrors(const Recording& recording, const Smoothed& input, double variance) : input_(input.recording) {
@@ -78,6 +100,13 @@ InputErrors::InputErrors(const Recording& recording, const Smoothed& input, doub
     precision_.block(i, i, coefficients, coefficients) = of_noise * of_coordinate;
   precision_.diagonal().segment(held, started).setConstant(of_noise);
   precision_.diagonal().tail(rolls).setConstant(of_roll);
+  const auto add_rows = [&](const Eigen::MatrixXd& of) {
+    const std::vector<int> rows_of = first_rows(of);
+    first_rows_.insert(first_rows_.end(), rows_of.begin(), rows_of.end());
+  };
+  for (Eigen::Index i = 0; i < held; i += coefficients) add_rows(splines_);
+  first_rows_.resize(static_cast<std::size_t>(held + started), 0);
+  for (int end = 0; end < 2; ++end) add_rows(roll_splines_);
 }
 
 Input InputErrors::changed(const Eigen::VectorXd& errors) const {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "start.h"
 
@@ -20,14 +21,28 @@ AttachmentDesc clamp(const char* name, PlaceDesc::At at, const char* frame) {
   return desc;
 }
 
-/// The markers on the hands are where the hands are.
-void place_held(const HeldEnds& ends, double time, const std::array<double, 2>& held, std::vector<Vector3>& markers) {
-  const Pose start = ends.start.at(time), end = ends.end.at(time);
-  const std::size_t last = markers.size() - 1;
-  markers[0] = start.position;
-  markers[1] = start.position + start.orientation * Vector3(held[0], 0, 0);
-  markers[last - 1] = end.position - end.orientation * Vector3(held[1], 0, 0);
-  markers[last] = end.position;
+SceneDesc held_cable(SceneDesc cable, const Markers& markers) {
+  cable.cables.front().attachments = clamps(markers);
+  return cable;
+}
+
+FrameSource frames_of(const SceneDesc& scene, const HeldEnds& ends) {
+  return {scene, {{start_frame, ends.start}, {end_frame, ends.end}}};
+}
+
+/// Where markers sit beside the cable, those on the hands are where the hands are.
+void place_held(const Markers& markers, const Recording& recording, const HeldEnds& ends, Prediction& prediction) {
+  if (markers.offsets.empty()) return;
+  for (int row = 0; row < recording.rows(); ++row) {
+    const double time = recording.times[row];
+    const Pose start = ends.start.at(time), end = ends.end.at(time);
+    std::vector<Vector3>& positions = prediction.positions[row];
+    const std::size_t last = positions.size() - 1;
+    positions[0] = start.position;
+    positions[1] = start.position + start.orientation * Vector3(markers.held[0], 0, 0);
+    positions[last - 1] = end.position - end.orientation * Vector3(markers.held[1], 0, 0);
+    positions[last] = end.position;
+  }
 }
 
 }  // namespace
@@ -45,23 +60,29 @@ HeldEnds held_ends(const Markers& markers, const Recording& recording) {
   return markers.offsets.empty() ? held_ends(recording) : held_ends(recording, markers.usual_directions);
 }
 
-Prediction simulate(World& world, const FrameSource& frames, double time_step, const std::vector<double>& times,
-                    const std::function<std::vector<Vector3>()>& markers) {
-  Prediction prediction;
-  std::vector<Vector3> positions = markers(), before = positions;
-  for (const double time : times) {
-    // The first step at or after the row; rounding does not add one.
-    const auto step = static_cast<std::int64_t>(std::ceil(time / time_step - 1e-6));
-    while (world.steps() < step && prediction.sound) {
-      const StepResult result = world.step(frames.at(static_cast<double>(world.steps() + 1) * time_step));
-      prediction.sound = result.status != StepResult::Status::fault;
-      before = std::move(positions);
-      positions = markers();
-    }
-    const double back = static_cast<double>(step) - time / time_step;
-    std::vector<Vector3>& row = prediction.positions.emplace_back(positions);
-    for (std::size_t i = 0; i < row.size(); ++i) row[i] += back * (before[i] - positions[i]);
+Course::Course(World world, MarkersIn markers)
+    : world_(std::move(world)), markers_(std::move(markers)), positions_(markers_(world_)), before_(positions_) {}
+
+std::vector<Vector3> Course::at(double time, const FrameSource& frames) {
+  const double time_step = world_.time_step();
+  // The first step at or after the time; rounding does not add one.
+  const auto step = static_cast<std::int64_t>(std::ceil(time / time_step - 1e-6));
+  while (world_.steps() < step && is_sound_) {
+    const StepResult result = world_.step(frames.at(static_cast<double>(world_.steps() + 1) * time_step));
+    is_sound_ = result.status != StepResult::Status::fault;
+    before_ = std::move(positions_);
+    positions_ = markers_(world_);
   }
+  const double back = static_cast<double>(step) - time / time_step;
+  std::vector<Vector3> result = positions_;
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] += back * (before_[i] - positions_[i]);
+  return result;
+}
+
+Prediction simulate(Course course, const FrameSource& frames, const std::vector<double>& times) {
+  Prediction prediction;
+  for (const double time : times) prediction.positions.push_back(course.at(time, frames));
+  prediction.sound = course.is_sound();
   return prediction;
 }
 
@@ -71,17 +92,35 @@ Prediction predict(const SceneDesc& cable, const Markers& markers, const Recordi
 
 Prediction predict(const SceneDesc& cable, const Markers& markers, const Recording& recording, const HeldEnds& ends,
                    bool smooth_start) {
-  SceneDesc scene = cable;
-  scene.cables.front().attachments = clamps(markers);
-  const FrameSource frames(scene, {{start_frame, ends.start}, {end_frame, ends.end}});
-  start_along(markers, recording, frames.at(0), smooth_start, scene);
-  World world(scene, frames.at(0));
+  return predict_by({}, cable, markers, recording, ends, smooth_start).prediction;
+}
 
-  Prediction prediction = simulate(world, frames, scene.time_step, recording.times,
-                                   [&] { return marker_positions(world.cables().front(), markers); });
-  if (markers.offsets.empty()) return prediction;
-  for (int row = 0; row < recording.rows(); ++row)
-    place_held(ends, recording.times[row], markers.held, prediction.positions[row]);
+Waypoints predict_by(std::vector<int> rows, const SceneDesc& cable, const Markers& markers, const Recording& recording,
+                     const HeldEnds& ends, bool smooth_start) {
+  SceneDesc scene = held_cable(cable, markers);
+  const FrameSource frames = frames_of(scene, ends);
+  start_along(markers, recording, frames.at(0), smooth_start, scene);
+  Course course(World(scene, frames.at(0)),
+                [markers](const World& world) { return marker_positions(world.cables().front(), markers); });
+  Waypoints result{std::move(rows), {}, {}};
+  for (int row = 0; row < recording.rows(); ++row) {
+    result.prediction.positions.push_back(course.at(recording.times[row], frames));
+    if (std::binary_search(result.rows.begin(), result.rows.end(), row)) result.courses.push_back(course);
+  }
+  result.prediction.sound = course.is_sound();
+  place_held(markers, recording, ends, result.prediction);
+  return result;
+}
+
+Prediction predict_on(const Waypoints& waypoints, std::size_t which, const SceneDesc& cable, const Markers& markers,
+                      const Recording& recording, const HeldEnds& ends) {
+  const FrameSource frames = frames_of(held_cable(cable, markers), ends);
+  Course course = waypoints.courses[which];
+  Prediction prediction = waypoints.prediction;
+  for (int row = waypoints.rows[which] + 1; row < recording.rows(); ++row)
+    prediction.positions[row] = course.at(recording.times[row], frames);
+  prediction.sound = course.is_sound();
+  place_held(markers, recording, ends, prediction);
   return prediction;
 }
 
