@@ -73,6 +73,10 @@ void add_target(int attachment, const WantedNode& wanted, const std::vector<Vect
 
 }  // namespace
 
+bool is_drawn_to_holder(const KinematicTarget& target, double time) {
+  return remaining(target.caught, target.gap.norm(), time) > 0 && !target.gap.isZero(0);
+}
+
 bool bends_at(const CableModel& model, const CableState& state, int node) {
   const CableMaterials materials(model, state);
   return std::max(materials[std::max(node - 1, 0)].bending_stiffness.largest(),

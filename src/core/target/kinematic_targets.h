@@ -42,6 +42,9 @@ struct KinematicTarget {
   Vector3 lasting_force = Vector3::Zero();
 };
 
+/// Whether a node that was caught is still on its way to where its holder has it, at a time [s].
+bool is_drawn_to_holder(const KinematicTarget& target, double time);
+
 /// The motion of a direction and roll that a clamp holds, over a step.
 struct DirectionTarget {
   int attachment = 0;

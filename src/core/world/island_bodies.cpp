@@ -98,22 +98,29 @@ void IslandStepper::begin_bodies(const Island& island, double from, double to, S
 }
 
 /// Those that touch nothing, by one substep. False if it has not converged.
-bool IslandStepper::solve_bodies() {
+bool IslandStepper::advance_bodies(double from, bool tolerated) {
+  BodySystem& system = workspace_.body_system;
   std::vector<Participant>& participants = workspace_.participants;
-  return workspace_.body_system.advance(participants, state_.scene->tolerance) &&
-         std::none_of(participants.begin(), participants.end(), is_drawn_out);
+  const bool converged = system.advance(participants, state_.scene->tolerance) &&
+                         std::none_of(participants.begin(), participants.end(), is_drawn_out) &&
+                         (tolerated || !columns_give_way(from));
+  if (converged) {
+    system.place_at_end(participants);
+    for (Participant& p : participants) p.stepper->finish(p.substep, false, *p.state, *p.result);
+  }
+  return converged;
 }
 
 /// Bodies in line, on what is pulled straight and cannot stretch, had no solution: they have one if that strains a little, or
 /// gives in where it is too short for the frames that draw them.
-bool IslandStepper::solve_straight_bodies(const Island& island, double from, double to, Scheme scheme) {
+bool IslandStepper::advance_straight_bodies(const Island& island, double from, double to, Scheme scheme, bool tolerated) {
   std::vector<Participant>& participants = workspace_.participants;
   const bool straight = std::any_of(participants.begin(), participants.end(),
                                     [](const Participant& p) { return is_straight_on_bodies(p.substep, *p.state); });
   if (!straight) return false;
   for (Participant& p : participants) p.substep.strains_on_bodies = true;
   begin_bodies(island, from, to, scheme);
-  if (solve_bodies()) return true;
+  if (advance_bodies(from, tolerated)) return true;
   // A pin, too, may have drawn nodes to its body; what that leaves a shorter substep finds room for.
   const bool has_no_room = to - from <= longest_part_without_room;
   const bool overstretched = std::any_of(participants.begin(), participants.end(), [&](const Participant& p) {
@@ -122,14 +129,7 @@ bool IslandStepper::solve_straight_bodies(const Island& island, double from, dou
   if (!overstretched) return false;
   for (Participant& p : participants) p.substep.gives_in_on_bodies = true;
   begin_bodies(island, from, to, scheme);
-  return solve_bodies();
-}
-
-/// The states take what has been found for those that touch nothing.
-void IslandStepper::take_solved_bodies() {
-  std::vector<Participant>& participants = workspace_.participants;
-  workspace_.body_system.place_at_end(participants);
-  for (Participant& p : participants) p.stepper->finish(p.substep, false, *p.state, *p.result);
+  return advance_bodies(from, tolerated);
 }
 
 /// Aims what holds bodies at where it will be at the end of the step. Where it jumps, the body is carried along with it before it

@@ -359,11 +359,8 @@ bool IslandStepper::advance(Island& island, double from, double to, bool tolerat
   }
   BodySystem* const bodies = island.bodies.empty() ? nullptr : &workspace_.body_system;
   if (bodies != nullptr) begin_bodies(island, from, to, touching_scheme);
-  if (converged && bodies != nullptr && !touching) {
-    converged = (solve_bodies() || solve_straight_bodies(island, from, to, touching_scheme)) &&
-                (tolerated || !columns_give_way(from));
-    if (converged) take_solved_bodies();
-  }
+  if (converged && bodies != nullptr && !touching)
+    converged = advance_bodies(from, tolerated) || advance_straight_bodies(island, from, to, touching_scheme, tolerated);
   contact_work_ = 0;
   if (converged && touching) {
     ContactSolver& solver = workspace_.contact_solver;

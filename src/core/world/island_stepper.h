@@ -104,9 +104,8 @@ class IslandStepper {
   void begin(const Island& island);
   bool advance(Island& island, double from, double to, bool tolerated);
   void begin_bodies(const Island& island, double from, double to, Scheme scheme);
-  bool solve_bodies();
-  bool solve_straight_bodies(const Island& island, double from, double to, Scheme scheme);
-  void take_solved_bodies();
+  bool advance_bodies(double from, bool tolerated);
+  bool advance_straight_bodies(const Island& island, double from, double to, Scheme scheme, bool tolerated);
   void finish_bodies(const Island& island, double from, double to);
   void stop_bodies(const Island& island);
   void update_body_targets(const Island& island, IslandOutcome& found);
