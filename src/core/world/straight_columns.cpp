@@ -239,7 +239,8 @@ void bend(const Column& column, double slack, double time, double waves, int ind
 }
 
 /// Calls `f` with each span, about as straight, between what holds a cable, whatever that is, and its ends: what presses on an
-/// end keeps it where it is. Not those whose end is on its way to what has caught it.
+/// end keeps it where it is. Not those that give way at an end: where material flows through a guide, or a node is on its way to
+/// what has caught it.
 template <class Function>
 void for_each_straight_span(int index, const State& state, double tolerance, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
@@ -249,14 +250,14 @@ void for_each_straight_span(int index, const State& state, double tolerance, con
     f(StraightSpan{first, last, is_clamped(first, targets), is_clamped(last, targets)});
   };
   int from = 0;
-  bool is_there = true;
+  bool stays = true;
   for (const KinematicTarget& target : targets.nodes) {
-    const bool is_drawn = is_drawn_to_holder(target, state.time());
-    if (is_there && !is_drawn) visit(from, target.node);
+    const bool stays_there = !target.slides && !is_drawn_to_holder(target, state.time());
+    if (stays && stays_there) visit(from, target.node);
     from = target.node;
-    is_there = !is_drawn;
+    stays = stays_there;
   }
-  if (is_there) visit(from, cable.segments());
+  if (stays) visit(from, cable.segments());
 }
 
 /// Whether compression surely is too small for anything to grow by a factor of more than e in a time [s], after Gershgorin.
