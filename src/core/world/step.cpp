@@ -212,15 +212,6 @@ void World::Implementation::collect_outcomes(StepResult& result) {
     append(outcome.body_intrusions, findings.body_intrusions);
     outcome.contacts.collect(findings.contacts, findings.body_contacts);
   }
-  // What is found names segments as they were in their substeps; a guide or a winch may have taken the last one in since.
-  const auto keep_there = [&](int cable, int& segment) {
-    if (cable >= 0) segment = std::min(segment, state.cables[cable].state.segments() - 1);
-  };
-  for (Intrusion& found : findings.intrusions) keep_there(found.cable, found.segment);
-  for (SimulatedContact& contact : findings.contacts) {
-    keep_there(contact.cable, contact.segment);
-    keep_there(contact.other_cable, contact.other_segment);
-  }
   for (const Intrusion& found : findings.intrusions) {
     const double strain = cable_outcomes.value[found.cable].result.max_strain;
     note({cable_id(found.cable), StepResult::Status::inside_obstacle, found.segment, strain}, result);
