@@ -5,6 +5,7 @@
 
 #include "chain/node_arrays.h"
 #include "edit/numbered_name.h"
+#include "edit/used_names.h"
 #include "guide/node_passing.h"
 #include "rod/rod_frames.h"
 #include "verlet_cable/core/number_text.h"
@@ -223,11 +224,8 @@ EditResult World::Implementation::cut_cable(int cable, int segment) {
   }
 
   const auto taken = [&](const std::string& n) {
-    const auto has_name = [&](const auto& desc) { return desc.name == n; };
-    const auto any = [&](const auto& descs) { return std::any_of(descs.begin(), descs.end(), has_name); };
-    const SceneDesc& scene = *state.scene;
-    return find(state.cables, n) >= 0 || any(scene.cables) || any(scene.nets) || any(scene.particles) || any(state.bodies) ||
-           any(state.guides) || any(state.obstacles);
+    return kind_with_name(n, state) != nullptr || any_has_name(n, state.bodies) || any_has_name(n, state.guides) ||
+           any_has_name(n, state.obstacles);
   };
   release_wheels_on(cable, segment);
   CableModel model = *state.cables[cable].model;

@@ -3,6 +3,7 @@
 #include <string>
 #include <utility>
 
+#include "edit/used_names.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/obstacle_of.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -59,18 +60,6 @@ std::string problem_of(const Obstacle& obstacle, std::size_t frames) {
   return std::visit([](const auto& shape) { return problem_of(shape); }, obstacle.shape);
 }
 
-/// What has a name that contacts tell; null: nothing but obstacles.
-const char* kind_of(const std::string& name, const State& state) {
-  const auto has_it = [&](const auto& descs) {
-    return std::any_of(descs.begin(), descs.end(), [&](const auto& desc) { return desc.name == name; });
-  };
-  const SceneDesc& scene = *state.scene;
-  if (find(state.cables, name) >= 0 || has_it(scene.cables)) return "cable";
-  if (has_it(scene.nets)) return "net";
-  if (has_it(scene.bodies)) return "body";
-  return has_it(scene.particles) ? "particle" : nullptr;
-}
-
 auto find_obstacle(std::vector<Obstacle>& obstacles, const std::string& name) {
   return std::find_if(obstacles.begin(), obstacles.end(), [&](const Obstacle& obstacle) { return obstacle.name == name; });
 }
@@ -108,7 +97,7 @@ void leave_out(int obstacle, std::vector<Found>& intrusions) {
 EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   Obstacle obstacle = set.obstacle;
   std::string problem = problem_of(obstacle, state.frames.names.size());
-  if (const char* other = kind_of(obstacle.name, state); problem.empty() && other != nullptr)
+  if (const char* other = kind_with_name(obstacle.name, state); problem.empty() && other != nullptr)
     problem = std::string("name: that of a ") + other + "; allowed: names that no cable, net, particle or body has";
   if (!problem.empty()) return refused("obstacle " + quoted(obstacle.name) + ": " + problem);
   obstacle.pose.orientation.normalize();

@@ -67,20 +67,17 @@ bool is_clamped(int node, const KinematicTargets& targets) {
                      [node](const DirectionTarget& direction) { return direction.node == node; });
 }
 
-/// Whether it moves as it is told, whatever the cable does.
-bool is_told(const KinematicTarget& target, const State& state) {
-  return state.attachments[target.attachment].holder < 0 && !target.slides;
-}
-
 /// Calls `f` with each straight span between two holders that move as they are told, and are then at `place`.
 template <class Place, class Function>
 void for_each_column(int index, const State& state, const Place& place, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
+  const auto is_told = [&](const KinematicTarget& target) {
+    return state.attachments[target.attachment].holder < 0 && !target.slides;
+  };
   for (std::size_t k = 0; k + 1 < targets.nodes.size(); ++k) {
     const KinematicTarget &from = targets.nodes[k], &to = targets.nodes[k + 1];
-    if (to.node - from.node < 2 || !is_told(from, state) || !is_told(to, state) || !is_straight(cable, from.node, to.node))
-      continue;
+    if (to.node - from.node < 2 || !is_told(from) || !is_told(to) || !is_straight(cable, from.node, to.node)) continue;
     Column column{{from.node, to.node, is_clamped(from.node, targets), is_clamped(to.node, targets)}, place(from), place(to)};
     column.length = cable.length(from.node, to.node);
     if (column.distance() > 0) f(column);
@@ -238,15 +235,15 @@ void bend(const Column& column, double slack, double time, double waves, int ind
   start_anew(before, index, state);
 }
 
-/// Calls `f` with each span, about as straight, between what holds a cable, whatever that is, and its ends: what presses on an
+/// Calls `f` with each span, almost straight, between what holds a cable, whatever that is, and its ends: what presses on an
 /// end keeps it where it is. Not those that give way at an end: where material flows through a guide, or a node is on its way to
 /// what has caught it.
 template <class Function>
-void for_each_straight_span(int index, const State& state, double tolerance, const Function& f) {
+void for_each_straight_span(int index, const State& state, const Function& f) {
   const KinematicTargets& targets = state.cable_progress[index].targets;
   const CableState& cable = state.cables[index].state;
   const auto visit = [&](int first, int last) {
-    if (last - first < 2 || !is_straight(cable, first, last, tolerance)) return;
+    if (last - first < 2 || !is_straight(cable, first, last, pressed_straightness)) return;
     f(StraightSpan{first, last, is_clamped(first, targets), is_clamped(last, targets)});
   };
   int from = 0;
@@ -317,7 +314,7 @@ bool lies_against(const StraightSpan& span, int cable, const std::vector<Touch>&
 
 GivesWay gives_way(const Participant& p, const std::vector<Touch>& touches, State& state) {
   bool gives = false, bent = false;
-  for_each_straight_span(p.cable, state, pressed_straightness, [&](const StraightSpan& span) {
+  for_each_straight_span(p.cable, state, [&](const StraightSpan& span) {
     const auto tension_at = [&](int i) { return p.stepper->tension(i); };
     if (is_surely_stable_for(p.substep.h, span, *p.state, tension_at) || lies_against(span, p.cable, touches, state)) return;
     std::vector<double> tension;

@@ -113,10 +113,11 @@ def _read(options):
     for name, pair, least, most in (('--distance', options.distance, 1e-3, 1e6), ('--elevation', options.elevation, -89, 89)):
         if pair and not least <= pair[0] <= pair[1] <= most:
             errors.append(rejected(name, f'{pair[0]:g} {pair[1]:g}', f'two numbers, the larger one last (from {least:g} to {most:g})'))
-    sweep = _collected(errors, lambda: _sweep_of(options))
+    what = _collected(errors, lambda: _what_runs(options))
     if errors:
         raise SweepError(errors)
-    return camera, sweep, _samples(options, sweep)
+    sweep, scene = what
+    return camera, sweep, _samples(options, sweep, scene)
 
 
 def _collected(errors, read):
@@ -150,13 +151,13 @@ def _camera_of(path):
         raise SweepError([f'{path}: {line}' for line in str(error).splitlines()]) from error
 
 
-def _sweep_of(options):
-    """Of one sample without variations, where it is a scene."""
+def _what_runs(options):
+    """A sweep and None, or a sweep of one sample without variations, and its scene."""
     if options.sweep is not None:
         given = [name for name in ('motion', 'loads', 'duration', 'rate') if getattr(options, name) is not None]
         if given:
             raise SweepError([rejected(f'--{name}', 'given with --sweep', f'{name} in {options.sweep}') for name in given])
-        return read_sweep(options.sweep)[0]
+        return read_sweep(options.sweep)[0], None
     sweep = Sweep()
     sweep.duration = 10.0 if options.duration is None else options.duration
     sweep.rate = 1.0 if options.rate is None else options.rate
@@ -174,13 +175,13 @@ def _sweep_of(options):
     if errors:
         raise SweepError(errors)
     sweep.samples = 1
-    return sweep
+    return sweep, scene
 
 
-def _samples(options, sweep):
+def _samples(options, sweep, scene):
     """_Samples, and a text for each that cannot be."""
-    if options.sweep is None:
-        yield _Sample(options.scene, Scene.load(options.scene), options.motion, options.loads)
+    if scene is not None:
+        yield _Sample(options.scene, scene, options.motion, options.loads)
         return
     scenes = Scenes(sweep)
     for index in range(sweep.samples):
