@@ -1,6 +1,8 @@
 #include "frame_source.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <set>
 #include <stdexcept>
 
@@ -51,7 +53,12 @@ FrameSource::FrameSource(ByteReader& bytes, std::size_t most_ids) {
     require_one_of(frame.id, ids_);
     std::vector<double> times;
     bytes.read_list(times);
-    for (const double time : times) frame.track.add(time, read_pose(bytes));
+    double latest = -std::numeric_limits<double>::infinity();
+    for (const double time : times) {
+      if (!(time > latest && std::isfinite(time))) throw std::invalid_argument("the times of a frame do not ascend");
+      frame.track.add(time, read_pose(bytes));
+      latest = time;
+    }
     frame.track.find_jumps(jump_speed_);
     frame.resting = read_pose(bytes);
   }

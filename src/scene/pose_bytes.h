@@ -5,6 +5,7 @@
 
 #include "verlet_cable/core/bytes.h"
 #include "verlet_cable/core/types.h"
+#include "verlet_cable/core/world.h"
 
 namespace verlet_cable {
 
@@ -25,12 +26,13 @@ inline void write_pose(const Pose& pose, ByteWriter& bytes) {
   for (int k = 0; k < 4; ++k) bytes(pose.orientation.coeffs()[k]);
 }
 
-/// Throws std::invalid_argument where it is not finite, or its orientation is no rotation.
+/// Throws std::invalid_argument where it cannot be used (`is_sound`), or its orientation is no rotation.
 inline Pose read_pose(ByteReader& bytes) {
   constexpr double tolerance = 1e-6;
   Pose pose;
   pose.position = read_vector(bytes);
   for (int k = 0; k < 4; ++k) bytes(pose.orientation.coeffs()[k]);
+  if (!is_sound(pose)) throw std::invalid_argument("a pose is out of range");
   if (!(std::abs(pose.orientation.norm() - 1) <= tolerance)) throw std::invalid_argument("an orientation is no rotation");
   return pose;
 }
