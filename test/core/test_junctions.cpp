@@ -208,6 +208,67 @@ TEST(Harness, ThatReachesABoardStartsLyingOnItAtRest) {
     }
 }
 
+/// A trunk between two hands; branches of another material, the first with a hinge, that end at plugs.
+SceneDesc with_plugs(const MaterialDesc& of_trunk, const MaterialDesc& of_branches) {
+  SceneDesc scene = nothing();
+  scene.materials[0].material = of_trunk;
+  NamedMaterial branches = scene.materials[0];
+  branches.name = "branch";
+  branches.material = of_branches;
+  scene.materials.push_back(branches);
+  CableDesc& trunk = add_cable(scene, "trunk", 0.610828, 36);
+  for (const double x : {0.0, 0.315925}) {
+    const bool left = x == 0;
+    trunk.attachments.push_back(scenes::attachment(left ? "left" : "right", left ? PlaceDesc::At::start : PlaceDesc::At::end,
+                                                   {x, 0, 1}, "", AttachmentType::clamp));
+  }
+  for (int i = 0; i < 2; ++i) {
+    const std::string name = "b" + std::to_string(i), plug = "plug" + std::to_string(i);
+    CableDesc& cable = add_cable(scene, name, 0.16 + 0.008 * i, 13 + i);
+    cable.material = "branch";
+    cable.attachments = {scenes::attachment(name + "_end", PlaceDesc::At::end, {-0.015, 0, 0}, "", AttachmentType::clamp)};
+    cable.attachments[0].body = plug;
+    BodyDesc& body = scene.bodies.emplace_back();
+    body.name = plug;
+    body.mass = 0.045 - 0.005 * i;
+    body.shapes.emplace_back();
+    body.shapes[0].type = ShapeType::box;
+    body.shapes[0].size = {0.03, 0.016, 0.01};
+  }
+  add_junction(scene, "trunk", 0.203609, {branch("b0", End::start, {0, 0, 0.521848})}).type = JunctionDesc::Type::hinge;
+  add_junction(scene, "trunk", 0.407219, {branch("b1", End::start, {0, 0, 0.799344})});
+  return scene;
+}
+
+/// What resists no twist may spin by any angle, and what hangs on it, too: it rests in all of them.
+TEST(Harness, ThatIsFreeToSpinSettles) {
+  MaterialDesc limp;
+  limp.linear_density = 0.0146725;
+  limp.radius = 0.00115516;
+  limp.axial_stiffness = 2738.61;
+  limp.axial_damping = 0.273861;
+  limp.bending_stiffness = 0.000913601;
+  limp.bending_damping = 2.58609e-05;
+  MaterialDesc wire = limp;
+  wire.linear_density = 0.026;
+  wire.radius = 0.00225;
+  wire.axial_stiffness = 8.4e4;
+  wire.bending_stiffness = 3.7e-4;
+  MaterialDesc twisting = wire;
+  twisting.torsional_stiffness = 2.7e-4;
+  for (const MaterialDesc& of_trunk : {limp, wire, twisting})
+    for (const MaterialDesc& of_branches : {wire, twisting}) {
+      const SceneDesc scene = with_plugs(of_trunk, of_branches);
+      BoundaryInputs inputs = initial_frames(scene);
+      World world(scene, inputs);
+      EXPECT_TRUE(world.findings().unsettled.empty());
+      const std::vector<Vector3> before = world.cables()[1].state.positions;
+      run(world, inputs, 0.5);
+      for (std::size_t i = 0; i < before.size(); ++i)
+        EXPECT_LT((world.cables()[1].state.positions[i] - before[i]).norm(), 1e-6) << i;
+    }
+}
+
 class Harnesses : public testing::TestWithParam<Harness> {};
 
 TEST_P(Harnesses, settleAndStand) {

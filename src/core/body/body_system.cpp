@@ -108,7 +108,7 @@ bool BodySystem::advance(std::vector<Participant>& participants, double toleranc
     if (!(size < largest_correction)) return false;
     const bool reached = convergence.is_reached(size);
     // Where rounding is what is left, the tolerance of cables is enough.
-    const bool rounded = !rules_.statics && i > 1 && convergence.ratio() > rounding_ratio &&
+    const bool rounded = i > 1 && convergence.ratio() > rounding_ratio &&
                          size < tolerance * std::min(rules_.h, longest_tolerated);
     const bool consistent = std::all_of(participants.begin(), participants.end(),
                                         [](const Participant& p) { return p.stepper->flows_are_consistent(p.substep); });

@@ -12,13 +12,13 @@ namespace verlet_cable {
 
 namespace {
 
-/// In statics a twist increment meets at least this part of a joint's resistance: a rod between hinges may be free to spin.
-constexpr double least_static_resistance = 1e-9;
+/// In statics a twist increment meets at least this part of a joint's resistance: a rod between hinges may be free to spin, and what
+/// has no torsional stiffness is everywhere. Where inertia alone were left, it would vanish in the rounding of long steps.
+constexpr double least_static_resistance = 1e-7;
 
-/// [N m^2] See joint_material().
+/// [N m^2] Of what has no torsional stiffness, that to bending: both are about the same in round sections.
 double resistance_to_twist(const MaterialDesc& material) {
-  const bool as_bent = material.torsional_stiffness == 0 && material.remembers_bending();
-  return as_bent ? material.bending_stiffness.smallest() : material.torsional_stiffness;
+  return material.torsional_stiffness > 0 ? material.torsional_stiffness : material.bending_stiffness.smallest();
 }
 
 /// About the tangent, of a round section [kg m]

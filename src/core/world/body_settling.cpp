@@ -29,7 +29,7 @@ constexpr double falling_growth = 1.02;
 constexpr int calm_steps = 3;
 /// What moves by less in a step of this length [s] stands, too: rounding may keep longer ones from converging.
 constexpr double long_step = 100;
-constexpr double settled_displacement = 1e-7;  // radii
+constexpr double settled_displacement = 1e-6;  // radii
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
 constexpr double settled_contact = 1e-4;       // radii
