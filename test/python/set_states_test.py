@@ -245,3 +245,86 @@ def test_all_that_a_load_at_an_eyelet_can_do_can_be_set(material):
         # It is let go from there: no faster than what falls, or swings.
         speed = numpy.linalg.norm(world.body_twist('load')[:3])
         assert speed < 1.2 * 9.81 * 25 * DT, case
+
+
+HARNESS = {
+    'materials': {'m': {'linear_density': 0.1, 'radius': 0.005, 'bending_stiffness': 0.01}},
+    'cables': [
+        {'name': 'trunk', 'length': 1.0, 'segments': 20, 'material': 'm', 'attachments': [
+            {'name': 'left', 'at': 'start', 'offset': [0, 0, 1]}, {'name': 'right', 'at': 'end', 'offset': [0.8, 0, 1]}]},
+        {'name': 'branch', 'length': 0.5, 'segments': 10, 'material': 'm'}],
+    'junctions': [{'name': 'fork', 'cable': 'trunk', 'at': 0.5, 'branches': [
+        {'cable': 'branch', 'end': 'start', 'rotation': [0, 0, 1.57]}]}]}
+
+
+def shaken(scene):
+    world = world_of(scene)
+    world.apply_force('branch', 10, [0.3, 0.3, 0])
+    world.step(300)
+    return world
+
+
+def of_cables(world, names):
+    return {name: {'positions': world.positions(name), 'velocities': world.velocities(name)} for name in names}
+
+
+@pytest.mark.parametrize('names', [('trunk', 'branch'), ('branch', 'trunk')])
+def test_junctions_go_with_the_cables_that_they_join(names):
+    one, other = shaken(HARNESS), world_of(HARNESS)
+    other.set_states(of_cables(one, names))
+    for name in names:
+        assert abs(other.positions(name) - one.positions(name)).max() < 1e-8
+        assert abs(other.velocities(name) - one.velocities(name)).max() < 1e-3
+    other.step()
+    for name in names:  # it starts as it was, not with a jump
+        assert abs(other.positions(name) - one.positions(name)).max() < 2e-3
+
+
+def test_a_branch_that_is_given_no_place_goes_with_its_trunk():
+    one, other = shaken(HARNESS), world_of(HARNESS)
+    before = other.positions('branch')
+    other.set_states(of_cables(one, ['trunk']))
+    assert abs(other.positions('trunk') - one.positions('trunk')).max() < 1e-8
+    assert abs(other.positions('branch')[0] - one.positions('trunk')[10]).max() < 1e-8
+    lengths_of_branch = numpy.linalg.norm(numpy.diff(other.positions('branch'), axis=0), axis=1)
+    assert abs(lengths_of_branch - 0.05).max() < 1e-6
+    assert abs(other.positions('branch') - before).max() > 0.05
+
+
+def test_a_free_harness_is_put_elsewhere():
+    scene = copy.deepcopy(HARNESS)
+    scene['cables'][0].pop('attachments')
+    scene['cables'][0]['initial'] = {'type': 'straight', 'from': [0, 0, 1], 'to': [1, 0, 1]}
+    world = world_of(scene)
+    world.step(50)
+    places = {name: world.positions(name) + [1, 2, 3] for name in ('trunk', 'branch')}
+    world.set_states({name: {'positions': place} for name, place in places.items()})
+    for name, place in places.items():
+        assert abs(world.positions(name) - place).max() < 1e-8
+
+
+@pytest.mark.parametrize('distance', [0.49, 0.4998, 0.4999])
+def test_a_taut_cable_has_the_positions_that_it_has(distance):
+    world = world_of({'materials': {'m': ROPE}, 'cables': [{'name': 'rope', 'length': 0.5, 'segments': 20, 'material': 'm', 'attachments': [
+        {'name': 'a', 'at': 'start'}, {'name': 'b', 'at': 'end', 'offset': [distance, 0, 0]}]}]})
+    world.step(200)
+    before = world.positions('rope')
+    world.set_state('rope', positions=before)
+    # Strains of 4e-8 are taken from it, and a taut cable sags by the root of a strain.
+    assert abs(world.positions('rope') - before).max() < 3e-5
+
+
+def test_where_nothing_is_given_nothing_changes():
+    world = world_of(ATWOOD)
+    world.step(50)
+    before = world.save()
+    for name in ('rope', 'left'):
+        world.set_state(name)
+    assert world.save() == before
+
+
+def test_errors_of_several_things_name_the_thing():
+    world = world_of(HARNESS)
+    short = numpy.zeros((21, 3))
+    with pytest.raises(ValueError, match='trunk.positions: a polyline of 0 m'):
+        world.set_states({'trunk': {'positions': short}, 'branch': {'velocities': numpy.zeros((11, 3))}})

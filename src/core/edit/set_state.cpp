@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <set>
 #include <string>
 #include <utility>
 
@@ -14,6 +15,7 @@
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "world/implementation.h"
+#include "world/junctions.h"
 
 namespace verlet_cable {
 
@@ -31,6 +33,16 @@ constexpr double rounding_of_lengths = 1e-9;
 constexpr double strain_rounding = 1e-9;
 /// [m], [1], [m/s], [1/s] Bodies that are no further from a pose or twist have it.
 constexpr double same_pose = 1e-9;
+
+using OfCable = edit::SetState::OfCable;
+using OfBody = edit::SetState::OfBody;
+
+bool gives_something(const OfCable& of) {
+  return of.positions || of.velocities;
+}
+bool gives_something(const OfBody& of) {
+  return of.pose || of.velocity || of.angular_velocity;
+}
 
 /// Of vectors for each node [m], [m/s].
 void check_nodes(const std::string& field, const std::optional<std::vector<Vector3>>& vectors, const CableState& cable,
@@ -61,14 +73,14 @@ bool is_pose_of(const SimulatedBody& body, const Pose& pose) {
   return (pose.position - body.pose.position).norm() <= same_pose && turn.vec().norm() <= same_pose;
 }
 
-bool is_twist_of(const SimulatedBody& body, const edit::SetState::OfBody& set) {
+bool is_twist_of(const SimulatedBody& body, const OfBody& set) {
   const auto is_same = [](const std::optional<Vector3>& given, const Vector3& own) {
     return !given || (*given - own).norm() <= same_pose;
   };
   return is_same(set.velocity, body.velocity) && is_same(set.angular_velocity, body.angular_velocity);
 }
 
-void check_body(const edit::SetState::OfBody& set, const State& state, Problems& problems) {
+void check_body(const OfBody& set, const State& state, Problems& problems) {
   const std::string other = not_free(set.body, state);
   const SimulatedBody& body = state.bodies[set.body];
   if (!state.body_progress[set.body].is_placed) problems.add("pose: the body does not exist until what holds it is known");
@@ -100,6 +112,65 @@ void check_guide(const edit::SetState::OfGuide& set, const State& state, Problem
   if (!(set.arc_length >= least && set.arc_length <= most))
     problems.add("arc_length: " + number_text(set.arc_length) + "; must be from " + rounded_text(least) + " to " +
                  rounded_text(most) + " m, a segment from either end");
+}
+
+/// It begins there.
+void put_body(const Pose& pose, int index, State& state) {
+  SimulatedBody& body = state.bodies[index];
+  body.pose = {pose.position, pose.orientation.normalized()};
+  Frames& frames = state.frames;
+  frames.poses[body.frame] = frames.previous_poses[body.frame] = frames.earlier_poses[body.frame] = body.pose;
+  state.body_progress[index].contacts.clear();
+}
+
+/// What the steps before have found of a body is of another motion.
+void forget_motion(BodyProgress& progress) {
+  progress.acceleration = progress.angular_acceleration = Vector3::Zero();
+  progress.has_moved = false;
+}
+
+/// The attachments by which a cable is joined at the junctions that it has placed, as the first of theirs, and that nothing but
+/// cables holds: they go with it.
+std::vector<int> joints_that_go_with(int cable, const State& state) {
+  std::vector<int> joints;
+  std::set<int> seen;
+  for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
+    const Attachment& attachment = state.attachments[a];
+    if (!attachment.is_junction || !seen.insert(attachment.holder).second || attachment.body != cable_id(cable)) continue;
+    if (state.body_progress[attachment.holder].holders.empty()) joints.push_back(a);
+  }
+  return joints;
+}
+
+/// Cables that what is set takes along: joined at such a junction, and given no positions themselves.
+std::vector<char> cables_that_follow(const std::vector<OfCable>& set, const State& state) {
+  std::vector<char> follows(state.cables.size(), 0);
+  for (const OfCable& of : set)
+    for (const int joint : joints_that_go_with(of.cable, state))
+      for (const Attachment& a : state.attachments)
+        if (a.holder == state.attachments[joint].holder && a.body.is_cable()) follows[a.body.index] = 1;
+  for (const OfCable& of : set)
+    if (of.positions) follows[of.cable] = 0;
+  return follows;
+}
+
+/// In the order in which they were joined: what a junction goes with comes before what it holds.
+std::vector<OfCable> trunks_first(std::vector<OfCable> set, const State& state) {
+  const auto place = [&](const OfCable& of) {
+    return std::find_if(state.attachments.begin(), state.attachments.end(),
+                        [&](const Attachment& a) { return a.is_junction && a.body == cable_id(of.cable); });
+  };
+  std::stable_sort(set.begin(), set.end(), [&](const OfCable& a, const OfCable& b) { return place(a) < place(b); });
+  return set;
+}
+
+/// What holds a cable now but for some attachments.
+std::vector<HeldNode> held_without(const std::vector<int>& attachments, const KinematicTargets& targets) {
+  std::vector<HeldNode> held = boundary_now(targets).nodes;
+  for (std::size_t k = held.size(); k-- > 0;)
+    if (std::count(attachments.begin(), attachments.end(), targets.nodes[k].attachment) > 0)
+      held.erase(held.begin() + static_cast<std::ptrdiff_t>(k));
+  return held;
 }
 
 /// Where bodies hold a cable now, and how fast.
@@ -163,30 +234,30 @@ void draw_straight(const std::vector<HeldNode>& held, CableState& cable) {
   }
 }
 
-/// False if the nodes find no shape near these positions with the cable's lengths.
-bool put_at(std::vector<Vector3> positions, int index, State& state) {
-  SimulatedCable& cable = state.cables[index];
-  const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
-  const std::vector<Vector3> before = std::exchange(cable.state.positions, std::move(positions));
-  if (CableMaterials(cable).any_rigid()) draw_straight(held, cable.state);
-  const std::vector<Vector3> drawn = cable.state.positions;
+/// False if the nodes find no shape near these positions with the cable's lengths between those that hold it.
+bool put_at(std::vector<Vector3> positions, const std::vector<HeldNode>& held, SimulatedCable& cable) {
+  const std::vector<Vector3> before = std::exchange(cable.state.positions, positions);
   bool found = project_positions(*cable.model, held, cable.state);
   if (!found) {
-    cable.state.positions = drawn;
-    found = has_lengths(held, cable);
+    cable.state.positions = std::move(positions);
+    if (CableMaterials(cable).any_rigid()) draw_straight(held, cable.state);
+    const std::vector<Vector3> drawn = cable.state.positions;
+    found = project_positions(*cable.model, held, cable.state);
+    if (!found) {
+      cable.state.positions = drawn;
+      found = has_lengths(held, cable);
+    }
   }
   if (found) carry_frames(before, cable.state);
   return found;
 }
 
-/// Of the cables that bodies or guides change; by their index.
-std::vector<std::optional<SpanShapes>> shapes_to_follow(const edit::SetState& set, const std::vector<char>& is_changed,
-                                                        const State& state) {
-  std::vector<std::optional<SpanShapes>> shapes(is_changed.size());
-  if (set.bodies.empty() && set.guides.empty()) return shapes;
-  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+/// Of the cables that follow, a flag a cable; by their index.
+std::vector<std::optional<SpanShapes>> shapes_to_follow(const std::vector<char>& follows, const State& state) {
+  std::vector<std::optional<SpanShapes>> shapes(follows.size());
+  for (std::size_t c = 0; c < follows.size(); ++c) {
     const std::vector<HeldNode> held = boundary_now(state.cable_progress[c].targets).nodes;
-    if (is_changed[c] && !held.empty()) shapes[c].emplace(held, state.cables[c].state);
+    if (follows[c] && !held.empty()) shapes[c].emplace(held, state.cables[c].state);
   }
   return shapes;
 }
@@ -200,9 +271,9 @@ void put_between(const SpanShapes& shapes, int index, State& state) {
 /// With the lengths that it has between its holders, and no further strained than is `allowed`: near where it is, or hanging.
 bool fits(double allowed, int index, State& state) {
   if (largest_strain_of_spans(index, state) > allowed) return false;
-  if (put_at(state.cables[index].state.positions, index, state)) return true;
   SimulatedCable& cable = state.cables[index];
   const std::vector<HeldNode> held = boundary_now(state.cable_progress[index].targets).nodes;
+  if (put_at(cable.state.positions, held, cable)) return true;
   hang_anew(*cable.model, held, gravity_near(state, index), cable.state);
   return has_lengths(held, cable);
 }
@@ -238,17 +309,17 @@ bool let_through(const edit::SetState::OfGuide& set, const SpanShapes& shapes, S
 EditResult World::Implementation::apply(const edit::SetState& set) {
   Problems problems(set.cables.size() + set.bodies.size() + set.guides.size() > 1);
   std::vector<char> is_changed(state.cables.size(), 0);
-  for (const edit::SetState::OfCable& of : set.cables) {
+  for (const OfCable& of : set.cables) {
     if (of.cable < 0 || of.cable >= static_cast<int>(state.cables.size()))
       return refused("cable: " + std::to_string(of.cable) + "; must be the index of a cable");
-    is_changed[of.cable] = 1;
+    is_changed[of.cable] = gives_something(of);
   }
-  for (const edit::SetState::OfBody& of : set.bodies) {
+  for (const OfBody& of : set.bodies) {
     if (of.body < 0 || of.body >= static_cast<int>(state.bodies.size()) || state.bodies[of.body].is_junction)
       return refused("body: " + std::to_string(of.body) + "; must be the index of a body that is no junction");
     problems.of(state.bodies[of.body].name);
     check_body(of, state, problems);
-    if (!not_free(of.body, state).empty()) continue;  // it is where it was
+    if (!not_free(of.body, state).empty() || !gives_something(of)) continue;  // it is where it was
     for (const Attachment& a : state.attachments)
       if (a.holder == of.body && a.body.is_cable()) is_changed[a.body.index] = 1;
   }
@@ -261,7 +332,7 @@ EditResult World::Implementation::apply(const edit::SetState& set) {
   }
   // Of what a guide lets through only the step itself knows how many nodes the cable has then.
   if (set.guides.empty())
-    for (const edit::SetState::OfCable& of : set.cables) {
+    for (const OfCable& of : set.cables) {
       problems.of(state.cables[of.cable].model->name);
       check_nodes("positions", of.positions, state.cables[of.cable].state, problems);
       check_nodes("velocities", of.velocities, state.cables[of.cable].state, problems);
@@ -270,8 +341,39 @@ EditResult World::Implementation::apply(const edit::SetState& set) {
   return set_checked(set, is_changed);
 }
 
+/// As it is given, with the junctions that go with it.
+void World::Implementation::put_cable(const OfCable& of, Problems& problems) {
+  SimulatedCable& cable = state.cables[of.cable];
+  check_nodes("positions", of.positions, cable.state, problems);
+  check_nodes("velocities", of.velocities, cable.state, problems);
+  if (!problems.text().empty() || !gives_something(of)) return;
+  const std::vector<int> joints = joints_that_go_with(of.cable, state);
+  std::vector<Quaternion> axes;
+  for (const int joint : joints) axes.push_back(axes_at(cable.state, state.attachments[joint].node));
+  hold_where_bodies_are(of.cable, state);
+  if (of.positions) {
+    Errors errors;
+    check_polyline_length("positions", *of.positions, cable.state.length(), polyline_length(cable.state.positions), errors);
+    if (errors.size() > 0) return problems.add(errors.take().front());
+    if (!put_at(*of.positions, held_without(joints, state.cable_progress[of.cable].targets), cable))
+      return problems.add("positions: no shape near them has the cable's lengths where its holders are");
+  }
+  if (of.velocities) cable.state.velocities = *of.velocities;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    const Attachment& joint = state.attachments[joints[i]];
+    SimulatedBody& junction = state.bodies[joint.holder];
+    const Quaternion turn = axes_at(cable.state, joint.node) * axes[i].conjugate();
+    if (of.positions) put_body({cable.state.positions[joint.node], turn * junction.pose.orientation}, joint.holder, state);
+    if (of.velocities) {
+      junction.velocity = cable.state.velocities[joint.node];
+      junction.angular_velocity = spin_at(cable.state, joint.node);
+    }
+    forget_motion(state.body_progress[joint.holder]);
+  }
+}
+
 /// `is_changed`: a cable, whether it is to be set, or is held by what is.
-EditResult World::Implementation::set_checked(const edit::SetState& set, const std::vector<char>& is_changed) {
+EditResult World::Implementation::set_checked(const edit::SetState& set, std::vector<char> is_changed) {
   const State before = state;
   const auto refuse = [&](const std::string& message) {
     state = before;
@@ -280,21 +382,17 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
   std::vector<double> allowed(state.cables.size());
   for (std::size_t c = 0; c < allowed.size(); ++c)
     if (is_changed[c]) allowed[c] = allowed_strain(static_cast<int>(c), before);
-  const std::vector<std::optional<SpanShapes>> shapes = shapes_to_follow(set, is_changed, before);
-  for (const edit::SetState::OfBody& of : set.bodies) {
-    if (!not_free(of.body, state).empty()) continue;
+  const bool by_holders = !set.bodies.empty() || !set.guides.empty();
+  const std::vector<std::optional<SpanShapes>> shapes =
+      shapes_to_follow(by_holders ? is_changed : std::vector<char>(is_changed.size(), 0), before);
+  const std::vector<std::optional<SpanShapes>> branches = shapes_to_follow(cables_that_follow(set.cables, before), before);
+  for (const OfBody& of : set.bodies) {
+    if (!not_free(of.body, state).empty() || !gives_something(of)) continue;
     SimulatedBody& body = state.bodies[of.body];
-    BodyProgress& progress = state.body_progress[of.body];
-    if (of.pose) {
-      body.pose = {of.pose->position, of.pose->orientation.normalized()};
-      Frames& frames = state.frames;
-      frames.poses[body.frame] = frames.previous_poses[body.frame] = frames.earlier_poses[body.frame] = body.pose;
-      progress.contacts.clear();
-    }
+    if (of.pose) put_body(*of.pose, of.body, state);
     if (of.velocity) body.velocity = *of.velocity;
     if (of.angular_velocity) body.angular_velocity = *of.angular_velocity;
-    progress.acceleration = progress.angular_acceleration = Vector3::Zero();
-    progress.has_moved = false;
+    forget_motion(state.body_progress[of.body]);
   }
   for (std::size_t c = 0; c < is_changed.size(); ++c) {
     if (!is_changed[c]) continue;
@@ -314,20 +412,21 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, const s
     return refuse("arc_length: too little of the cable " + name +
                   " between what holds it; allowed: where all that hold it reach");
   }
-  for (const edit::SetState::OfCable& of : set.cables) {
-    SimulatedCable& cable = state.cables[of.cable];
-    Problems problems;
-    check_nodes("positions", of.positions, cable.state, problems);
-    check_nodes("velocities", of.velocities, cable.state, problems);
+  Problems problems(set.cables.size() + set.bodies.size() + set.guides.size() > 1);
+  for (const OfCable& of : trunks_first(set.cables, before)) {
+    problems.of(before.cables[of.cable].model->name);
+    put_cable(of, problems);
     if (!problems.text().empty()) return refuse(problems.text());
-    if (of.positions) {
-      Errors errors;
-      check_polyline_length("positions", *of.positions, cable.state.length(), polyline_length(cable.state.positions), errors);
-      if (errors.size() > 0) return refuse(errors.take().front());
-    }
-    if (of.positions && !put_at(*of.positions, of.cable, state))
-      return refuse("positions: no shape near them has the cable's lengths where its holders are");
-    if (of.velocities) cable.state.velocities = *of.velocities;
+  }
+  for (std::size_t c = 0; c < is_changed.size(); ++c) {
+    const int index = static_cast<int>(c);
+    is_changed[c] = is_changed[c] || branches[c];
+    if (is_changed[c]) hold_where_bodies_are(index, state);
+    if (!branches[c]) continue;
+    put_between(*branches[c], index, state);
+    if (!fits(allowed_strain(index, before), index, state))
+      return refuse("positions: too far for the cable " + state.cables[c].model->name +
+                    "; allowed: where all that hold it reach");
   }
   for (std::size_t c = 0; c < is_changed.size(); ++c) {
     if (!is_changed[c]) continue;

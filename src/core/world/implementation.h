@@ -19,6 +19,8 @@
 
 namespace verlet_cable {
 
+class Problems;
+
 struct World::Implementation {
   State state;
   Findings findings;
@@ -85,7 +87,8 @@ struct World::Implementation {
   EditResult apply(const edit::RemoveObstacle& remove);
   EditResult apply(const edit::ApplyLoad& request);
   EditResult apply(const edit::SetState& set);
-  EditResult set_checked(const edit::SetState& set, const std::vector<char>& is_changed);
+  EditResult set_checked(const edit::SetState& set, std::vector<char> is_changed);
+  void put_cable(const edit::SetState::OfCable& of, Problems& problems);
   EditResult cut_cable(int cable, int segment);
   EditResult cut_link(int net, int link);
   void update_net(int net);
