@@ -116,6 +116,33 @@ def test_a_seed_gives_the_same_data(crossed, tmp_path):
     assert len(pictures) == 4
 
 
+def depths(path):
+    """(images, height, width) [mm]"""
+    images = json.loads((path / 'annotations.json').read_text())['images']
+    return np.array([np.asarray(image.open(path / entry['depth_file'])) for entry in images], dtype=float)
+
+
+def test_each_image_has_noise_of_its_own(crossed, tmp_path):
+    world = World(crossed)
+
+    def noise(name, seed, camera_seed, threads, *seen):
+        camera = Camera(64, 48, 0.9, noise={'axial': [0.02, 0, 0]}, seed=camera_seed, threads=threads).look_at([0, -0.2, 2], [0, 0, 0])
+        with coco.Dataset(tmp_path / name, seed=seed) as dataset:
+            for one in seen:
+                dataset.add(camera, one, vary_looks=False)
+        return depths(tmp_path / name) - 1000 * Camera(64, 48, 0.9).look_at([0, -0.2, 2], [0, 0, 0]).render(world, ['depth'])['depth']
+
+    first = noise('a', 1, 2, 1, world, world, World(crossed), Batch(crossed, 3))
+    # All at one time. Of 3072 independent pixels, correlations are below 0.1, more than five times their deviation.
+    others = [noise('b', 3, 2, 1, world), noise('c', 1, 4, 1, world)]
+    correlations = np.corrcoef(np.concatenate([first, *others]).reshape(8, -1))
+    assert (np.abs(correlations[~np.eye(8, dtype=bool)]) < 0.1).all()
+    np.testing.assert_allclose(first.std(axis=(1, 2)), 20, rtol=0.1)
+    # A function of seeds and number: not of how images are added, nor of the threads.
+    assert np.array_equal(noise('d', 1, 2, 2, Batch(crossed, 2), world, Batch(crossed, 3)), first)
+    assert noise('e', 1, 2, 1, world).tobytes() == first[:1].tobytes()
+
+
 def test_wrong_arguments_are_named(crossed, tmp_path):
     (tmp_path / 'full').mkdir()
     (tmp_path / 'full/file').touch()

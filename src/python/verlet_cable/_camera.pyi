@@ -8,7 +8,7 @@ class CompiledCamera:
     @property
     def intrinsics(self) -> tuple[float, float, float, float]: ...
     def render(
-        self, drawings: Any, pose: Sequence[float], seed: int, images: Sequence[int], wanted: Sequence[str], threads: int,
+        self, drawings: Any, pose: Sequence[float], noise: Sequence[tuple[int, int]], wanted: Sequence[str], threads: int,
     ) -> dict[str, Any]: ...
 
 most_pixels: int

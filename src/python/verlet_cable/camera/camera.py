@@ -17,6 +17,7 @@ _NOISE = {'axial': (0.0, 0.0, 0.0), 'dropout_angle': 90.0, 'baseline': 0.0, 'dis
 _CAMERA = {'width': 640, 'height': 480, 'horizontal_fov': 1.05, 'near': 0.1, 'far': 10.0, 'distortion': (0.0,) * 5}
 _FURTHEST = 1e9  # [m] as of frames
 _SEEDS = 1 << 64
+_WORLD_STRIDE = 0x9e3779b97f4a7c15  # between the seeds of a batch's worlds: so far apart that other seeds do not meet them
 _NANOSECONDS = 1e9
 
 
@@ -31,6 +32,13 @@ class Preset(NamedTuple):
 def presets() -> Dict[str, Preset]:
     """All presets by name."""
     return {name: Preset(*preset) for name, preset in _camera.presets().items()}
+
+
+class _Numbers(NamedTuple):
+    """Of the images of a data set. seed: the data set's; first: the number of the first of them."""
+
+    seed: int
+    first: int
 
 
 class Camera:
@@ -160,13 +168,23 @@ class Camera:
         check_size [m], shininess (0 to 1)}. stripes: whether cables have one that nothing is said of in looks. distinct_colors: where cables or nets have the same color, all of them get others that
         tell them apart. least_radius: [m] thinner cables are drawn so thick. Raises ValueError.
         """
-        wanted = _checked_images(images)
         given = {'light': light, 'background': background, 'looks': looks, 'stripes': stripes, 'distinct_colors': distinct_colors,
                  'least_radius': least_radius}
+        return self._render(world, images, given)
+
+    def _render(
+        self, world: Union[World, Batch], images: Sequence[str], given: Mapping[str, Any], numbers: Optional[_Numbers] = None,
+    ) -> Dict[str, Any]:
+        """As render. numbers: those of the images, of which noise is a function in place of the time."""
+        wanted = _checked_images(images)
         drawings, times = _drawings(world, {key: dict(value) if isinstance(value, Mapping) else value
                                             for key, value in given.items() if value is not None})
-        stamps = [round(time * _NANOSECONDS) for time in times]
-        result: Dict[str, Any] = self._camera.render(drawings, self._pose, self._seed, stamps, wanted, self._threads)
+        if numbers is None:
+            noise = [((self._seed + index * _WORLD_STRIDE) % _SEEDS, round(time * _NANOSECONDS)) for index, time in enumerate(times)]
+        else:
+            seed = int(np.random.SeedSequence([numbers.seed, self._seed]).generate_state(1, np.uint64)[0])
+            noise = [(seed, numbers.first + index) for index in range(len(times))]
+        result: Dict[str, Any] = self._camera.render(drawings, self._pose, noise, wanted, self._threads)
         if 'truth' in result:
             result['truth'] = _joined([_truth(cables) for cables in result['truth']], isinstance(world, Batch))
         if isinstance(world, World):

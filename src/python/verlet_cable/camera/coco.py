@@ -23,7 +23,7 @@ from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Un
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from verlet_cable.camera.camera import Camera, _integer, _point, _vector, _wrong
+from verlet_cable.camera.camera import Camera, _integer, _Numbers, _point, _vector, _wrong
 from verlet_cable.sim import Batch, World
 
 __all__ = ['Dataset', 'crossings']
@@ -40,8 +40,8 @@ class Dataset:
     """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
     (16 bit, millimetres, 0: none), and, when it is closed, annotations.json.
 
-    keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies; image k
-    depends on it and k only.
+    keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies, and
+    of noise: in image k both are functions of it and k, and noise also of the camera's seed, but not of the world's time.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
     that has pixels in the image, and of no other) and the category cable; and beside that, of images: time [s], matrix, distortion and pose
@@ -99,7 +99,7 @@ class Dataset:
         appearance: Dict[str, Any] = _random_appearance(random, labels) if vary_looks else {}
         appearance['looks'] = {**appearance.get('looks', {}), **(looks or {})}
         appearance.update({name: value for name, value in (('light', light), ('background', background)) if value is not None})
-        seen = camera.render(world, ['depth', 'rgb', 'mask', 'truth'], **appearance)
+        seen = camera._render(world, ['depth', 'rgb', 'mask', 'truth'], appearance, _Numbers(self._seed, len(self)))
         of_all: Dict[str, Any] = {'matrix': camera.matrix, 'distortion': camera.distortion, 'pose': camera.pose,
                                   'light': appearance.get('light')}
         if isinstance(world, World):
