@@ -85,6 +85,42 @@ def test_what_is_written_is_what_is_seen(crossed, tmp_path):
     np.testing.assert_allclose(over['positions'], seen['truth']['over']['positions'][::5], atol=1e-6)
 
 
+@pytest.mark.parametrize('segments', [3, 10, 30])
+def test_keypoints_are_evenly_along_cables(hang, tmp_path, segments):
+    """Also where there are fewer segments than keypoints, and with a lens; the cable goes out of the image, and half of it is under a lid."""
+    cable = dict(hang['cables'][0], attachments=[], segments=segments, initial={'type': 'straight', 'from': [-0.5, 0, 0], 'to': [0.5, 0, 0]})
+    hang['cables'] = [cable]
+    hang['obstacles'] = [{'name': 'lid', 'type': 'box', 'size': [1, 0.2, 0.01], 'pose': [0.501, 0, 0.1, 0, 0, 0]}]
+    lens = [-0.25, 0.06, 0.002, -0.001, 0.01]
+    camera = Camera(200, 150, 0.9, distortion=lens).look_at([0, -0.1, 0.85], [0, 0, 0])
+    with coco.Dataset(tmp_path / 'set', keypoints=21) as dataset:
+        dataset.add(camera, World(Scene.from_dict(hang)))
+    (annotation,) = check_format(tmp_path / 'set')['annotations']
+    # A cable that has a node at each keypoint says where they are seen.
+    cable['segments'] = 20
+    truth = camera.render(World(Scene.from_dict(hang)), ['truth'])['truth']['hose']
+    np.testing.assert_allclose(annotation['positions'], truth['positions'], atol=1e-6)
+    u, v, flags = np.reshape(annotation['keypoints'], (21, 3)).T
+    is_in = flags > 0
+    assert np.array_equal(is_in, (truth['u'] >= -0.5) & (truth['u'] < 199.5)) and not is_in.all()
+    np.testing.assert_allclose(u[is_in], truth['u'][is_in], atol=0.00051)
+    np.testing.assert_allclose(v[is_in], truth['v'][is_in], atol=0.00051)
+    # Half a segment from the edge of the lid on, they are seen where they are.
+    x = np.linspace(-0.5, 0.5, 21)
+    sure = is_in & (np.abs(x) > 0.51 / segments)
+    assert np.array_equal(flags[sure] == 2, truth['visible'][sure]) and {1, 2} <= set(flags[sure])
+
+
+def test_keypoints_of_a_segment_that_goes_through_the_image_are_seen(hang, tmp_path):
+    """None of its nodes is in the image."""
+    hang['cables'] = [dict(hang['cables'][0], attachments=[], segments=3, initial={'type': 'straight', 'from': [-0.5, 0, 0], 'to': [0.5, 0, 0]})]
+    with coco.Dataset(tmp_path / 'set', keypoints=21) as dataset:
+        dataset.add(Camera(100, 80, 0.25).look_at([0, -0.1, 1.0], [0, 0, 0]), World(Scene.from_dict(hang)))
+    (annotation,) = check_format(tmp_path / 'set')['annotations']
+    assert [k for k, flag in enumerate(annotation['keypoints'][2::3]) if flag == 2] == [8, 9, 10, 11, 12]
+    assert annotation['num_keypoints'] == 5
+
+
 def test_crossings_say_who_is_over(crossed, tmp_path):
     camera = Camera(160, 120, 0.9).look_at([0, -0.2, 2], [0, 0, 0])
     truth = camera.render(World(crossed), ['truth'])['truth']
@@ -163,7 +199,7 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
             dataset.add(**{'camera': Camera(8, 8), 'world': World(crossed), **arguments})
         assert str(caught.value).startswith(text)
     for truth, error in ((5, TypeError), ({'a': 1}, ValueError), ({'a': {'u': [1], 'v': [1, 2], 'positions': [[1, 2, 3]]}}, ValueError),
-                         ({'a': {'u': None, 'v': 3, 'positions': 'x'}}, ValueError)):
+                         ({'a': {'u': [1], 'v': [1], 'positions': [[1, 2, 3]]}}, ValueError), ({'a': {'u': None, 'v': 3, 'positions': 'x'}}, ValueError)):
         with pytest.raises(error, match='^truth.*; allowed: a truth as of Camera.render'):
             coco.crossings(truth)
     assert coco.crossings({}) == []

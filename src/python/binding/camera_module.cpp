@@ -197,6 +197,23 @@ py::dict presets() {
   return all;
 }
 
+/// (n, 2) [pixels] Of points in the optical frame, (n, 3); as view::project, with fx, fy, cx, cy and a distortion.
+py::array_t<double> project(const std::array<double, 4>& intrinsics, const std::array<double, 5>& distortion,
+                            const std::vector<std::array<double, 3>>& points) {
+  CameraModel model;
+  model.fx = intrinsics[0];
+  model.fy = intrinsics[1];
+  model.cx = intrinsics[2];
+  model.cy = intrinsics[3];
+  model.distortion = distortion;
+  py::array_t<double> pixels(std::vector<py::ssize_t>{static_cast<py::ssize_t>(points.size()), 2});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::array<double, 2> pixel = view::project(model, Vector3(points[i].data()));
+    std::copy(pixel.begin(), pixel.end(), pixels.mutable_data(static_cast<py::ssize_t>(i), 0));
+  }
+  return pixels;
+}
+
 py::list labels(const py::capsule& capsule) {
   py::list all;
   for (const view::Drawing& drawing : drawings_in(capsule)) all.append(view::labels(drawing));
@@ -225,6 +242,7 @@ PYBIND11_MODULE(_camera, module) {
       .def("render", &CompiledCamera::render, py::arg("drawings"), py::arg("pose"), py::arg("noise"), py::arg("wanted"),
            py::arg("threads"));
   module.def("look_at", &look_at, py::arg("eye"), py::arg("target"), py::arg("up") = py::none());
+  module.def("project", &project, py::arg("intrinsics"), py::arg("distortion"), py::arg("points"));
   module.def("presets", &presets);
   module.def("labels", &labels, py::arg("drawings"));
 }

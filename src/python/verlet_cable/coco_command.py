@@ -89,7 +89,7 @@ def _options(arguments):
                         help='[m] how far it is away: between these (default: such that all cables are about as large as the image)')
     parser.add_argument('--elevation', metavar=('A', 'B'), nargs=2, type=_number, default=(15.0, 75.0),
                         help='[degree] above the horizon: between these (default: 15 75)')
-    parser.add_argument('--keypoints', metavar='N', type=int, default=21, help='so many nodes of each cable (default: 21)')
+    parser.add_argument('--keypoints', metavar='N', type=int, default=21, help='so many points along each cable (default: 21)')
     parser.add_argument('--seed', metavar='N', type=int, default=0, help='of places, light and looks (default: 0)')
     parser.add_argument('--scene-looks', action='store_true', help="the scene's colors, and one light")
     return parser.parse_args(arguments)

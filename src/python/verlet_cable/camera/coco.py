@@ -18,11 +18,12 @@ import json
 import os
 import pathlib
 from types import TracebackType
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Type, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from verlet_cable import _camera
 from verlet_cable.camera.camera import Camera, _integer, _Numbers, _point, _vector, _wrong
 from verlet_cable.sim import Batch, World
 
@@ -40,7 +41,7 @@ class Dataset:
     """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
     (16 bit, millimetres, 0: none), and, when it is closed, annotations.json.
 
-    keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies, and
+    keypoints: so many points of each cable, from its start to its end at equal distances along it, as it is then. seed: of what add() varies, and
     of noise: in image k both are functions of it and k, and noise also of the camera's seed, but not of the world's time.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
@@ -164,21 +165,70 @@ class Dataset:
         for number, (cable, nodes) in enumerate(truth.items(), 1):
             pixels = seen['mask'] == number
             if pixels.any():
-                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels))
+                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels, matrix, distortion))
 
-    def _annotation(self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_]) -> Dict[str, Any]:
-        height, width = pixels.shape
-        chosen = np.round(np.linspace(0, len(nodes['u']) - 1, self._keypoints)).astype(int)
-        u, v = nodes['u'][chosen], nodes['v'][chosen]
-        with np.errstate(invalid='ignore'):
-            is_in = (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
-        flags = np.where(is_in, np.where(nodes['visible'][chosen], _SEEN, _HIDDEN), _NOT_THERE)
-        points = np.column_stack([np.where(is_in, u, 0), np.where(is_in, v, 0)])
-        keypoints = [number for (x, y), flag in zip(points.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
+    def _annotation(
+        self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_], matrix: ArrayLike, distortion: ArrayLike,
+    ) -> Dict[str, Any]:
+        points = _points_along(nodes['positions'], self._keypoints)
+        u, v = _projected(points.positions, matrix, distortion)
+        flags = _flags(u, v, points, nodes, pixels)
+        places = np.where((flags > _NOT_THERE)[:, None], np.column_stack([u, v]), 0)
+        keypoints = [number for (x, y), flag in zip(places.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
         return {'id': len(self._annotations) + 1, 'image_id': image, 'category_id': _CATEGORY, 'iscrowd': 0,
                 'segmentation': {'size': list(pixels.shape), 'counts': _run_lengths(pixels)}, 'area': int(pixels.sum()),
                 'bbox': _box(pixels), 'keypoints': keypoints, 'num_keypoints': int((flags > 0).sum()), 'cable': cable, 'mask': number,
-                'positions': np.round(nodes['positions'][chosen], 6).tolist()}
+                'positions': np.round(points.positions, 6).tolist()}
+
+
+class _Points(NamedTuple):
+    """Of a cable. segment, fraction: on which one they are, and how far on the way to its end."""
+
+    segment: NDArray[np.int64]
+    fraction: NDArray[np.float64]
+    positions: NDArray[np.float64]
+
+
+def _points_along(nodes: NDArray[np.float64], count: int) -> _Points:
+    """At equal distances along the line through nodes, (n + 1, 3), from its start to its end."""
+    lengths = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    starts = np.concatenate([[0.0], np.cumsum(lengths)])
+    places = np.linspace(0, starts[-1], count)
+    segment = np.clip(np.searchsorted(starts, places, 'right') - 1, 0, len(lengths) - 1)
+    passed = places - starts[segment]
+    fraction = np.clip(np.divide(passed, lengths[segment], out=np.zeros(count), where=lengths[segment] > 0), 0, 1)
+    part = fraction[:, None]
+    return _Points(segment, fraction, (1 - part) * nodes[segment] + part * nodes[segment + 1])
+
+
+def _projected(points: NDArray[np.float64], matrix: ArrayLike, distortion: ArrayLike) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """u, v [pixels] of points in the optical frame; NaN for what is not in front of the camera."""
+    (fx, _, cx), (_, fy, cy), _ = np.asarray(matrix).tolist()
+    pixels = _camera.project((fx, fy, cx, cy), np.asarray(distortion).tolist(), points.tolist())
+    return pixels[:, 0], pixels[:, 1]
+
+
+def _are_in_image(u: NDArray[np.float64], v: NDArray[np.float64], width: int, height: int) -> NDArray[np.bool_]:
+    with np.errstate(invalid='ignore'):
+        found: NDArray[np.bool_] = (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
+    return found
+
+
+def _flags(
+    u: NDArray[np.float64], v: NDArray[np.float64], points: _Points, nodes: Mapping[str, Any], pixels: NDArray[np.bool_],
+) -> NDArray[np.int64]:
+    """Which points of a cable at u, v are seen, hidden, or not in the image. What is known is whether nodes are: a point is seen as the
+    nearer one of the two nodes beside it is; where that is not in the image, as the other one; and where neither is, if its pixel is of
+    the cable."""
+    height, width = pixels.shape
+    is_in, has_node = _are_in_image(u, v, width, height), _are_in_image(nodes['u'], nodes['v'], width, height)
+    is_late = points.fraction > 0.5
+    nearer, other = points.segment + is_late, points.segment + ~is_late
+    of_pixel = np.zeros(len(u), dtype=bool)
+    of_pixel[is_in] = pixels[np.rint(v[is_in]).astype(int), np.rint(u[is_in]).astype(int)]
+    seen = np.select([has_node[nearer], has_node[other]], [nodes['visible'][nearer], nodes['visible'][other]], of_pixel)
+    flags: NDArray[np.int64] = np.where(is_in, np.where(seen, _SEEN, _HIDDEN), _NOT_THERE)
+    return flags
 
 
 def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
@@ -263,7 +313,7 @@ def _checked_images(images: Mapping[str, Any]) -> Dict[str, Any]:
 
 def _checked_truth(truth: Mapping[str, Mapping[str, Any]]) -> Dict[str, Dict[str, NDArray[Any]]]:
     """Its arrays. Raises TypeError, or ValueError."""
-    words = 'a truth as of Camera.render: {cable: {positions: (n + 1, 3), u: (n + 1,), v: (n + 1,)}}'
+    words = 'a truth as of Camera.render: {cable: {positions: (n + 1, 3), u: (n + 1,), v: (n + 1,)}}, of one segment or more'
     if not isinstance(truth, Mapping):
         raise TypeError(_wrong('truth', truth, words))
     checked = {}
@@ -276,7 +326,7 @@ def _checked_truth(truth: Mapping[str, Mapping[str, Any]]) -> Dict[str, Dict[str
             raise ValueError(_wrong(f'truth[{name!r}]', cable, words)) from None
         count = arrays['u'].size
         shapes = [array.shape for array in arrays.values()]
-        if shapes != [(count, 3), (count,), (count,)]:
+        if shapes != [(count, 3), (count,), (count,)] or count < 2:
             raise ValueError(f'truth[{name!r}]: positions, u, v of the shapes {", ".join(map(str, shapes))}; allowed: {words}')
         checked[name] = arrays
     return checked
