@@ -136,6 +136,34 @@ def test_crossings_say_who_is_over(crossed, tmp_path):
     assert found['over'][0] == 'under'
 
 
+def test_crossings_of_an_image_are_within_it_and_of_cables_that_it_shows(crossed, tmp_path):
+    """Cameras that look down on y = 0: the crossing at x = 0.1 is in the middle, beyond an edge, and beyond that of an image of `under` only."""
+    with coco.Dataset(tmp_path / 'set') as dataset:
+        for x in (0.1, 0.35, -0.35):
+            dataset.add(Camera(100, 100, 0.5).look_at([x, 0, 1], [x, 0, 0]), World(crossed))
+    content = check_format(tmp_path / 'set')
+    shown = [[a['cable'] for a in content['annotations'] if a['image_id'] == k] for k in (1, 2, 3)]
+    assert shown == [['under', 'over'], ['under'], ['under']]
+    assert [len(entry['crossings']) for entry in content['images']] == [1, 0, 0]
+    # Of an image that is turned by 45 degrees they go through a corner, and cross below its edge.
+    camera = Camera(100, 100, 0.5).look_at([0.28, 0.18, 1], [0.28, 0.18, 0], up=[1, 1, 0])
+    with coco.Dataset(tmp_path / 'turned') as dataset:
+        dataset.add(camera, World(crossed))
+    content = check_format(tmp_path / 'turned')
+    assert [a['cable'] for a in content['annotations']] == ['under', 'over'] and content['images'][0]['crossings'] == []
+    (found,) = coco.crossings(camera.render(World(crossed), ['truth'])['truth'])
+    assert found['pixel'][1] > 99.5
+
+
+def test_what_is_too_far_for_a_png_has_no_depth(crossed, tmp_path):
+    camera = Camera(64, 48, 0.9, far=200)
+    for name, distance in (('near', 60), ('far', 70)):
+        with coco.Dataset(tmp_path / name) as dataset:
+            dataset.add(camera.look_at([0, 0, distance], [0, 0, 0]), World(crossed))
+    assert depths(tmp_path / 'near').min() > 59000 and depths(tmp_path / 'far').max() == 0
+    assert (camera.render(World(crossed), ['depth'])['depth'] > 65.535).all()
+
+
 def test_a_seed_gives_the_same_data(crossed, tmp_path):
     for name, seed in (('a', 1), ('b', 1), ('c', 2)):
         with coco.Dataset(tmp_path / name, seed=seed) as dataset:

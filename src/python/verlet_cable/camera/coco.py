@@ -39,14 +39,14 @@ _SQUARES = (0.02, 0.5)              # [m]
 
 class Dataset:
     """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
-    (16 bit, millimetres, 0: none), and, when it is closed, annotations.json.
+    (16 bit, millimetres, 0: none, or more than 65.535 m), and, when it is closed, annotations.json.
 
     keypoints: so many points of each cable, from its start to its end at equal distances along it, as it is then. seed: of what add() varies, and
     of noise: in image k both are functions of it and k, and noise also of the camera's seed, but not of the world's time.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
     that has pixels in the image, and of no other) and the category cable; and beside that, of images: time [s], matrix, distortion and pose
-    of the camera, the light, labels and crossings; of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
+    of the camera, the light, labels and crossings (those in the image, of cables that have annotations); of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
     mask (its number in masks).
     """
 
@@ -154,18 +154,19 @@ class Dataset:
         truth, (height, width) = seen['truth'], seen['mask'].shape
         identity = len(self._images) + 1
         name = f'{identity:08d}.png'
-        depth = np.clip(np.nan_to_num(np.round(seen['depth'] * _MILLIMETRES), nan=0), 0, 65535).astype(np.uint16)
-        for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', depth)):
+        for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', _in_millimetres(seen['depth']))):
             Image.fromarray(np.ascontiguousarray(pixels)).save(self._path / folder / name, compress_level=1)
+        annotated = {}
+        for number, (cable, nodes) in enumerate(truth.items(), 1):
+            pixels = seen['mask'] == number
+            if pixels.any():
+                annotated[cable] = nodes
+                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels, matrix, distortion))
         self._images.append({
             'id': identity, 'width': width, 'height': height, 'file_name': f'images/{name}', 'mask_file': f'masks/{name}',
             'depth_file': f'depth/{name}', 'time': time, 'matrix': np.asarray(matrix).tolist(),
             'distortion': np.asarray(distortion).tolist(), 'pose': None if pose is None else pose.tolist(), 'light': _plain(light or {}),
-            'labels': labels, 'crossings': crossings(truth)})
-        for number, (cable, nodes) in enumerate(truth.items(), 1):
-            pixels = seen['mask'] == number
-            if pixels.any():
-                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels, matrix, distortion))
+            'labels': labels, 'crossings': [one for one in crossings(annotated) if _are_in_image(*one['pixel'], width, height)]})
 
     def _annotation(
         self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_], matrix: ArrayLike, distortion: ArrayLike,
@@ -208,10 +209,17 @@ def _projected(points: NDArray[np.float64], matrix: ArrayLike, distortion: Array
     return pixels[:, 0], pixels[:, 1]
 
 
-def _are_in_image(u: NDArray[np.float64], v: NDArray[np.float64], width: int, height: int) -> NDArray[np.bool_]:
+def _are_in_image(u: Any, v: Any, width: int, height: int) -> Any:
     with np.errstate(invalid='ignore'):
-        found: NDArray[np.bool_] = (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
-    return found
+        return (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
+
+
+def _in_millimetres(depth: NDArray[Any]) -> NDArray[np.uint16]:
+    """Of depths [m]; 0 for what has none, or does not fit: as camera_node's 16UC1."""
+    rounded = np.round(depth.astype(np.float64) * _MILLIMETRES)
+    with np.errstate(invalid='ignore'):
+        fits = (rounded >= 1) & (rounded <= np.iinfo(np.uint16).max)
+    return np.where(fits, rounded, 0).astype(np.uint16)
 
 
 def _flags(
@@ -232,7 +240,8 @@ def _flags(
 
 
 def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
-    """Where cables of a `truth` of Camera.render cross in the image, each other or themselves: dicts with pixel [u, v], and over and
+    """Where cables of a `truth` of Camera.render cross as the camera sees them, each other or themselves, also beyond the edges of its
+    image and behind what hides them: dicts with pixel [u, v], and over and
     under, which is behind: [cable, node], the node with its fraction on the way to the next one."""
     truth = _checked_truth(truth)
     names = list(truth)
