@@ -1,12 +1,16 @@
 """verlet_cable.camera.coco writes what COCO's readers read, and what it says is what the images show."""
+import errno
 import json
+import os
 import pathlib
+import signal
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+from verlet_cable import coco_command
 from verlet_cable.sim import Batch, Scene, World
 
 pytest.importorskip('verlet_cable.camera')
@@ -212,8 +216,16 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
     (tmp_path / 'full/file').touch()
     with pytest.raises(ValueError, match='path: .*allowed: a directory that is new or empty'):
         coco.Dataset(tmp_path / 'full')
-    with pytest.raises(ValueError, match='keypoints: 1; allowed: an integer'):
-        coco.Dataset(tmp_path / 'set', keypoints=1)
+    with pytest.raises(ValueError) as caught:
+        coco.Dataset(tmp_path / 'set', keypoints=1, seed=2**64)
+    assert str(caught.value) == ('keypoints: 1; allowed: an integer (from 2 to 10000)\n'
+                                 'seed: 18446744073709551616; allowed: an integer (from 0 to 18446744073709551615)')
+    for call, text in ((lambda: coco.Dataset(tmp_path / 'set', foo=1), 'foo: no such argument; allowed: path, keypoints, seed'),
+                       (lambda: coco.Dataset(), 'path: missing; allowed: a value')):
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert str(caught.value) == text
+    assert not (tmp_path / 'set').exists()
     for path in (5, None, ['set']):
         with pytest.raises(TypeError, match=r'path: .*; allowed: the path of a directory that is new or empty, as text, bytes or os.PathLike'):
             coco.Dataset(path)
@@ -236,6 +248,14 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
         with pytest.raises(ValueError) as caught:
             dataset.add(Camera(8, 8), World(crossed), **arguments)
         assert str(caught.value).startswith(text)
+    # Also where the camera stays, and all at once.
+    distances, elevations = 'two numbers [m], the larger one last (from 0.001 to 1e+06)', 'two numbers [degree], the larger one last (from -89 to 89)'
+    for target in ({}, {'target': [0, 0, 0]}):
+        for distance, elevation in ((0, (0, 100)), ((2, 1), 'up'), ((0, 1), (30, 20))):
+            with pytest.raises(ValueError) as caught:
+                dataset.add(Camera(8, 8), World(crossed), distance=distance, elevation=elevation, **target)
+            assert str(caught.value) == f'distance: {distance!r}; allowed: {distances}\nelevation: {elevation!r}; allowed: {elevations}'
+    assert len(dataset) == 0
 
 
 def test_nothing_is_added_to_what_is_closed(crossed, tmp_path):
@@ -338,17 +358,25 @@ def test_a_sweep_becomes_a_data_set(files):
 
 
 def test_what_the_program_cannot_use_is_named(files):
-    (files / 'bad.yaml').write_text('width: 0\nheigth: 3\n')
+    (files / 'bad.yaml').write_text('width: 0\nheigth: 3\ndepth_encoding: 8UC1\nnoise: {axial: 3}\n')
+    (files / 'encoding.yaml').write_text('depth_encoding: 16UC1\nseed: 18446744073709551616\n')
     (files / 'full').mkdir()
     (files / 'full/file').touch()
     scene = files / 'scene.yaml'
     for arguments, lines in (
             ([scene, '--output', files / 'a'], ['frames: nothing has placed hand']),
             ([scene, '--output', files / 'a', '--camera', files / 'bad.yaml', '--views', 0, '--rate', -1, '--duration', -2],
-             ['bad.yaml: heigth: unknown key', '--views: 0; allowed: ', '--rate: -1; allowed: ', '--duration: -2; allowed: ', 'frames: nothing has']),
+             ['bad.yaml: heigth: unknown key', 'bad.yaml: width: 0; allowed: ', "bad.yaml: depth_encoding: '8UC1'; allowed: 32FC1 | 16UC1",
+              'bad.yaml: noise.axial: 3; allowed: ', '--views: 0; allowed: ', '--rate: -1; allowed: ', '--duration: -2; allowed: ', 'frames: nothing has']),
             ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--rate', 1000], ['--rate: 1000; allowed: at most 1 / time_step']),
             ([scene, '--output', files / 'a', '--motion', files / 'none.csv'], ['none.csv']),
-            ([scene, '--output', files / 'full', '--motion', files / 'motion.csv'], ['a directory that is new or empty']),
+            ([scene, '--output', files / 'full', '--motion', files / 'motion.csv', '--views', 0],
+             [f'--output: {files}/full; allowed: a directory that is new or empty', '--views: 0; ']),
+            ([scene, '--output', files / 'full/file/set', '--motion', files / 'motion.csv'],
+             [f'--output: {files}/full/file/set: Not a directory; allowed: a directory that is new or empty, where files can be written']),
+            ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--seed', 2**64, '--camera', files / 'encoding.yaml'],
+             ['--seed: 18446744073709551616; allowed: an integer from 0 to 18446744073709551615',
+              'encoding.yaml: seed: 18446744073709551616; allowed: an integer (from 0 to 18446744073709551615)']),
             (['--sweep', files / 'sweep.yaml', '--output', files / 'a', '--rate', 3], ['--rate: given with --sweep; allowed: rate in']),
             ([files / 'none.yaml', '--output', files / 'a'], ['scene: cannot read']),
             (['--output', files / 'a'], ['SCENE.yaml']),
@@ -360,3 +388,15 @@ def test_what_the_program_cannot_use_is_named(files):
             assert line in errors
         assert 'Traceback' not in errors
         assert not (files / 'a').exists()
+
+
+@pytest.mark.parametrize('method', ['add', 'close'])
+def test_what_cannot_be_written_is_named(files, monkeypatch, capsys, method):
+    def fail(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(files / 'set/annotations.json'))
+
+    monkeypatch.setattr(coco.Dataset, method, fail)
+    monkeypatch.setattr(signal, 'signal', lambda *_: None)
+    status = coco_command.main([str(files / 'scene.yaml'), '--motion', str(files / 'motion.csv'), '--output', str(files / 'set'), '--duration', '0'])
+    count = 0 if method == 'add' else 1
+    assert (status, capsys.readouterr().err) == (3, f'cable_coco: --output: {files}/set: No space left on device; {count} images are in {files}/set\n')

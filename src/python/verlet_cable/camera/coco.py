@@ -24,11 +24,16 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from verlet_cable import _camera
-from verlet_cable.camera.camera import Camera, _integer, _Numbers, _point, _vector, _wrong
+from verlet_cable.camera.camera import LARGEST_SEED, Camera, _Checks, _Numbers, _point, _vector, _wrong
 from verlet_cable.sim import Batch, World
+from verlet_cable.wrong_arguments import explain_names
 
 __all__ = ['Dataset', 'crossings']
 
+NEW_DIRECTORY = 'a directory that is new or empty'
+MOST_KEYPOINTS = 10000
+DISTANCES = (1e-3, 1e6)       # [m]
+ELEVATIONS = (-89.0, 89.0)    # [degree]
 _CATEGORY = 1
 _MILLIMETRES = 1000.0
 _NOT_THERE, _HIDDEN, _SEEN = 0, 1, 2
@@ -37,6 +42,7 @@ _LIGHT_ELEVATIONS = (30.0, 90.0)    # [degree]
 _SQUARES = (0.02, 0.5)              # [m]
 
 
+@explain_names
 class Dataset:
     """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
     (16 bit, millimetres, 0: none, or more than 65.535 m), and, when it is closed, annotations.json.
@@ -56,8 +62,10 @@ class Dataset:
         except ImportError as error:
             raise ImportError(f'verlet_cable.camera.coco: {error}; it needs Pillow (Debian: sudo apt-get install python3-pil; pip install '
                               'pillow)') from error
-        self._keypoints = _integer('keypoints', keypoints, 2, 10000)
-        self._seed = _integer('seed', seed, 0)
+        checks = _Checks()
+        self._keypoints = checks.integer('keypoints', keypoints, 2, MOST_KEYPOINTS)
+        self._seed = checks.integer('seed', seed, 0, LARGEST_SEED)
+        checks.add([])
         self._path = _new_directory(path)
         for name in ('images', 'masks', 'depth'):
             (self._path / name).mkdir(parents=True, exist_ok=True)
@@ -93,9 +101,14 @@ class Dataset:
         if looks is not None and not isinstance(looks, Mapping):
             raise TypeError(_wrong('looks', looks, 'None, or a dict of looks by the names of things'))
         self._require_open()
+        checks = _Checks()
+        place = None if target is None else checks.value(lambda: _point('target', target))
+        distances = checks.value(lambda: _range('distance', distance, DISTANCES, ' [m]'))
+        elevations = checks.value(lambda: _range('elevation', elevation, ELEVATIONS, ' [degree]'))
+        checks.add([])
         random = np.random.default_rng([self._seed, len(self._images)])
-        if target is not None:
-            camera.look_at(*_random_view(random, _point('target', target), distance, elevation))
+        if place is not None:
+            camera.look_at(*_random_view(random, place, distances, elevations))
         labels = camera.labels(world)
         appearance: Dict[str, Any] = _random_appearance(random, labels) if vary_looks else {}
         appearance['looks'] = {**appearance.get('looks', {}), **(looks or {})}
@@ -276,18 +289,22 @@ def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
     return found
 
 
-def _new_directory(path: Union[str, bytes, os.PathLike[str]]) -> pathlib.Path:
-    allowed = 'a directory that is new or empty'
-    if not isinstance(path, (str, bytes, os.PathLike)):
-        raise TypeError(_wrong('path', path, f'the path of {allowed}, as text, bytes or os.PathLike'))
+def is_new_or_empty(path: Union[str, bytes, os.PathLike[str]]) -> bool:
+    """Whether there is no such directory, or an empty one."""
     name = os.fsdecode(path)
     try:
         is_name = name != '' and b'\0' not in os.fsencode(name)
     except UnicodeEncodeError:
         is_name = False
-    if not is_name or (os.path.lexists(name) and (not os.path.isdir(name) or os.listdir(name))):
-        raise ValueError(_wrong('path', path, allowed))
-    return pathlib.Path(name)
+    return is_name and (not os.path.lexists(name) or (os.path.isdir(name) and not os.listdir(name)))
+
+
+def _new_directory(path: Union[str, bytes, os.PathLike[str]]) -> pathlib.Path:
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        raise TypeError(_wrong('path', path, f'the path of {NEW_DIRECTORY}, as text, bytes or os.PathLike'))
+    if not is_new_or_empty(path):
+        raise ValueError(_wrong('path', path, NEW_DIRECTORY))
+    return pathlib.Path(os.fsdecode(path))
 
 
 def _numbers(name: str, value: ArrayLike, shape: Tuple[int, ...]) -> NDArray[np.float64]:
@@ -372,18 +389,20 @@ def _plain(light: Mapping[str, Any]) -> Dict[str, Any]:
     return {name: np.asarray(value).tolist() for name, value in light.items()}
 
 
-def _range(name: str, value: Tuple[float, float], least: float, most: float) -> Tuple[float, float]:
-    low, high = _vector(name, value, 2)
+def _range(name: str, value: Tuple[float, float], limits: Tuple[float, float], unit: str) -> Tuple[float, float]:
+    least, most = limits
+    allowed = f'two numbers{unit}, the larger one last (from {least:g} to {most:g})'
+    low, high = _vector(name, value, 2, allowed)
     if not least <= low <= high <= most:
-        raise ValueError(_wrong(name, value, f'two numbers, the larger one last (from {least:g} to {most:g})'))
+        raise ValueError(_wrong(name, value, allowed))
     return float(low), float(high)
 
 
 def _random_view(
     random: np.random.Generator, target: NDArray[np.float64], distance: Tuple[float, float], elevation: Tuple[float, float],
 ) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
-    away = random.uniform(*_range('distance', distance, 1e-3, 1e6))
-    height, around = np.radians(random.uniform(*_range('elevation', elevation, -89, 89))), random.uniform(-np.pi, np.pi)
+    away = random.uniform(*distance)
+    height, around = np.radians(random.uniform(*elevation)), random.uniform(-np.pi, np.pi)
     towards = np.array([np.cos(height) * np.cos(around), np.cos(height) * np.sin(around), np.sin(height)])
     return target + away * towards, target
 
