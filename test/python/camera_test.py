@@ -203,6 +203,20 @@ def test_wrong_arguments_are_named(arguments, lines):
     assert len(found) == len(lines) and all(line.startswith(start) for line, start in zip(found, lines)), found
 
 
+@pytest.mark.parametrize('call, text', [
+    (lambda: Camera(foo=3), 'foo: no such argument; allowed: width, height, horizontal_fov, near, far, noise, seed, distortion, preset, threads'),
+    (lambda: Camera(widht=3), 'widht: no such argument (did you mean width?); allowed: width, height,'),
+    (lambda: Camera(3, width=3), 'width: given twice; allowed: once'),
+    (lambda: Camera(*range(11)), '11 arguments without a name; allowed: at most 10: width, height,'),
+    (lambda: Camera().look_at([0, 0, 0], form=[1, 0, 0]), 'form: no such argument; allowed: eye, target, up'),
+    (lambda: Camera().look_at([0, 0, 0]), 'target: missing; allowed: a value'),
+])
+def test_arguments_that_there_are_not_are_named(call, text):
+    with pytest.raises(TypeError) as caught:
+        call()
+    assert str(caught.value).startswith(text)
+
+
 @pytest.mark.parametrize('arguments, text', [
     ({'images': 'depth'}, "images: 'depth'; allowed: a list with some of depth, rgb, mask, points, truth"),
     ({'images': ['deep']}, "images: ['deep']; allowed: a list with some of"),

@@ -1,12 +1,16 @@
 """verlet_cable.camera.coco writes what COCO's readers read, and what it says is what the images show."""
+import errno
 import json
+import os
 import pathlib
+import signal
 import subprocess
 import sys
 
 import numpy as np
 import pytest
 
+from verlet_cable import coco_command
 from verlet_cable.sim import Batch, Scene, World
 
 pytest.importorskip('verlet_cable.camera')
@@ -85,6 +89,42 @@ def test_what_is_written_is_what_is_seen(crossed, tmp_path):
     np.testing.assert_allclose(over['positions'], seen['truth']['over']['positions'][::5], atol=1e-6)
 
 
+@pytest.mark.parametrize('segments', [3, 10, 30])
+def test_keypoints_are_evenly_along_cables(hang, tmp_path, segments):
+    """Also where there are fewer segments than keypoints, and with a lens; the cable goes out of the image, and half of it is under a lid."""
+    cable = dict(hang['cables'][0], attachments=[], segments=segments, initial={'type': 'straight', 'from': [-0.5, 0, 0], 'to': [0.5, 0, 0]})
+    hang['cables'] = [cable]
+    hang['obstacles'] = [{'name': 'lid', 'type': 'box', 'size': [1, 0.2, 0.01], 'pose': [0.501, 0, 0.1, 0, 0, 0]}]
+    lens = [-0.25, 0.06, 0.002, -0.001, 0.01]
+    camera = Camera(200, 150, 0.9, distortion=lens).look_at([0, -0.1, 0.85], [0, 0, 0])
+    with coco.Dataset(tmp_path / 'set', keypoints=21) as dataset:
+        dataset.add(camera, World(Scene.from_dict(hang)))
+    (annotation,) = check_format(tmp_path / 'set')['annotations']
+    # A cable that has a node at each keypoint says where they are seen.
+    cable['segments'] = 20
+    truth = camera.render(World(Scene.from_dict(hang)), ['truth'])['truth']['hose']
+    np.testing.assert_allclose(annotation['positions'], truth['positions'], atol=1e-6)
+    u, v, flags = np.reshape(annotation['keypoints'], (21, 3)).T
+    is_in = flags > 0
+    assert np.array_equal(is_in, (truth['u'] >= -0.5) & (truth['u'] < 199.5)) and not is_in.all()
+    np.testing.assert_allclose(u[is_in], truth['u'][is_in], atol=0.00051)
+    np.testing.assert_allclose(v[is_in], truth['v'][is_in], atol=0.00051)
+    # Half a segment from the edge of the lid on, they are seen where they are.
+    x = np.linspace(-0.5, 0.5, 21)
+    sure = is_in & (np.abs(x) > 0.51 / segments)
+    assert np.array_equal(flags[sure] == 2, truth['visible'][sure]) and {1, 2} <= set(flags[sure])
+
+
+def test_keypoints_of_a_segment_that_goes_through_the_image_are_seen(hang, tmp_path):
+    """None of its nodes is in the image."""
+    hang['cables'] = [dict(hang['cables'][0], attachments=[], segments=3, initial={'type': 'straight', 'from': [-0.5, 0, 0], 'to': [0.5, 0, 0]})]
+    with coco.Dataset(tmp_path / 'set', keypoints=21) as dataset:
+        dataset.add(Camera(100, 80, 0.25).look_at([0, -0.1, 1.0], [0, 0, 0]), World(Scene.from_dict(hang)))
+    (annotation,) = check_format(tmp_path / 'set')['annotations']
+    assert [k for k, flag in enumerate(annotation['keypoints'][2::3]) if flag == 2] == [8, 9, 10, 11, 12]
+    assert annotation['num_keypoints'] == 5
+
+
 def test_crossings_say_who_is_over(crossed, tmp_path):
     camera = Camera(160, 120, 0.9).look_at([0, -0.2, 2], [0, 0, 0])
     truth = camera.render(World(crossed), ['truth'])['truth']
@@ -98,6 +138,34 @@ def test_crossings_say_who_is_over(crossed, tmp_path):
     # From below it is the other way round.
     (found,) = coco.crossings(camera.look_at([0, -0.2, -1.5], [0, 0, 0]).render(World(crossed), ['truth'])['truth'])
     assert found['over'][0] == 'under'
+
+
+def test_crossings_of_an_image_are_within_it_and_of_cables_that_it_shows(crossed, tmp_path):
+    """Cameras that look down on y = 0: the crossing at x = 0.1 is in the middle, beyond an edge, and beyond that of an image of `under` only."""
+    with coco.Dataset(tmp_path / 'set') as dataset:
+        for x in (0.1, 0.35, -0.35):
+            dataset.add(Camera(100, 100, 0.5).look_at([x, 0, 1], [x, 0, 0]), World(crossed))
+    content = check_format(tmp_path / 'set')
+    shown = [[a['cable'] for a in content['annotations'] if a['image_id'] == k] for k in (1, 2, 3)]
+    assert shown == [['under', 'over'], ['under'], ['under']]
+    assert [len(entry['crossings']) for entry in content['images']] == [1, 0, 0]
+    # Of an image that is turned by 45 degrees they go through a corner, and cross below its edge.
+    camera = Camera(100, 100, 0.5).look_at([0.28, 0.18, 1], [0.28, 0.18, 0], up=[1, 1, 0])
+    with coco.Dataset(tmp_path / 'turned') as dataset:
+        dataset.add(camera, World(crossed))
+    content = check_format(tmp_path / 'turned')
+    assert [a['cable'] for a in content['annotations']] == ['under', 'over'] and content['images'][0]['crossings'] == []
+    (found,) = coco.crossings(camera.render(World(crossed), ['truth'])['truth'])
+    assert found['pixel'][1] > 99.5
+
+
+def test_what_is_too_far_for_a_png_has_no_depth(crossed, tmp_path):
+    camera = Camera(64, 48, 0.9, far=200)
+    for name, distance in (('near', 60), ('far', 70)):
+        with coco.Dataset(tmp_path / name) as dataset:
+            dataset.add(camera.look_at([0, 0, distance], [0, 0, 0]), World(crossed))
+    assert depths(tmp_path / 'near').min() > 59000 and depths(tmp_path / 'far').max() == 0
+    assert (camera.render(World(crossed), ['depth'])['depth'] > 65.535).all()
 
 
 def test_a_seed_gives_the_same_data(crossed, tmp_path):
@@ -116,13 +184,48 @@ def test_a_seed_gives_the_same_data(crossed, tmp_path):
     assert len(pictures) == 4
 
 
+def depths(path):
+    """(images, height, width) [mm]"""
+    images = json.loads((path / 'annotations.json').read_text())['images']
+    return np.array([np.asarray(image.open(path / entry['depth_file'])) for entry in images], dtype=float)
+
+
+def test_each_image_has_noise_of_its_own(crossed, tmp_path):
+    world = World(crossed)
+
+    def noise(name, seed, camera_seed, threads, *seen):
+        camera = Camera(64, 48, 0.9, noise={'axial': [0.02, 0, 0]}, seed=camera_seed, threads=threads).look_at([0, -0.2, 2], [0, 0, 0])
+        with coco.Dataset(tmp_path / name, seed=seed) as dataset:
+            for one in seen:
+                dataset.add(camera, one, vary_looks=False)
+        return depths(tmp_path / name) - 1000 * Camera(64, 48, 0.9).look_at([0, -0.2, 2], [0, 0, 0]).render(world, ['depth'])['depth']
+
+    first = noise('a', 1, 2, 1, world, world, World(crossed), Batch(crossed, 3))
+    # All at one time. Of 3072 independent pixels, correlations are below 0.1, more than five times their deviation.
+    others = [noise('b', 3, 2, 1, world), noise('c', 1, 4, 1, world)]
+    correlations = np.corrcoef(np.concatenate([first, *others]).reshape(8, -1))
+    assert (np.abs(correlations[~np.eye(8, dtype=bool)]) < 0.1).all()
+    np.testing.assert_allclose(first.std(axis=(1, 2)), 20, rtol=0.1)
+    # A function of seeds and number: not of how images are added, nor of the threads.
+    assert np.array_equal(noise('d', 1, 2, 2, Batch(crossed, 2), world, Batch(crossed, 3)), first)
+    assert noise('e', 1, 2, 1, world).tobytes() == first[:1].tobytes()
+
+
 def test_wrong_arguments_are_named(crossed, tmp_path):
     (tmp_path / 'full').mkdir()
     (tmp_path / 'full/file').touch()
     with pytest.raises(ValueError, match='path: .*allowed: a directory that is new or empty'):
         coco.Dataset(tmp_path / 'full')
-    with pytest.raises(ValueError, match='keypoints: 1; allowed: an integer'):
-        coco.Dataset(tmp_path / 'set', keypoints=1)
+    with pytest.raises(ValueError) as caught:
+        coco.Dataset(tmp_path / 'set', keypoints=1, seed=2**64)
+    assert str(caught.value) == ('keypoints: 1; allowed: an integer (from 2 to 10000)\n'
+                                 'seed: 18446744073709551616; allowed: an integer (from 0 to 18446744073709551615)')
+    for call, text in ((lambda: coco.Dataset(tmp_path / 'set', foo=1), 'foo: no such argument; allowed: path, keypoints, seed'),
+                       (lambda: coco.Dataset(), 'path: missing; allowed: a value')):
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert str(caught.value) == text
+    assert not (tmp_path / 'set').exists()
     for path in (5, None, ['set']):
         with pytest.raises(TypeError, match=r'path: .*; allowed: the path of a directory that is new or empty, as text, bytes or os.PathLike'):
             coco.Dataset(path)
@@ -136,7 +239,7 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
             dataset.add(**{'camera': Camera(8, 8), 'world': World(crossed), **arguments})
         assert str(caught.value).startswith(text)
     for truth, error in ((5, TypeError), ({'a': 1}, ValueError), ({'a': {'u': [1], 'v': [1, 2], 'positions': [[1, 2, 3]]}}, ValueError),
-                         ({'a': {'u': None, 'v': 3, 'positions': 'x'}}, ValueError)):
+                         ({'a': {'u': [1], 'v': [1], 'positions': [[1, 2, 3]]}}, ValueError), ({'a': {'u': None, 'v': 3, 'positions': 'x'}}, ValueError)):
         with pytest.raises(error, match='^truth.*; allowed: a truth as of Camera.render'):
             coco.crossings(truth)
     assert coco.crossings({}) == []
@@ -145,6 +248,14 @@ def test_wrong_arguments_are_named(crossed, tmp_path):
         with pytest.raises(ValueError) as caught:
             dataset.add(Camera(8, 8), World(crossed), **arguments)
         assert str(caught.value).startswith(text)
+    # Also where the camera stays, and all at once.
+    distances, elevations = 'two numbers [m], the larger one last (from 0.001 to 1e+06)', 'two numbers [degree], the larger one last (from -89 to 89)'
+    for target in ({}, {'target': [0, 0, 0]}):
+        for distance, elevation in ((0, (0, 100)), ((2, 1), 'up'), ((0, 1), (30, 20))):
+            with pytest.raises(ValueError) as caught:
+                dataset.add(Camera(8, 8), World(crossed), distance=distance, elevation=elevation, **target)
+            assert str(caught.value) == f'distance: {distance!r}; allowed: {distances}\nelevation: {elevation!r}; allowed: {elevations}'
+    assert len(dataset) == 0
 
 
 def test_nothing_is_added_to_what_is_closed(crossed, tmp_path):
@@ -247,17 +358,25 @@ def test_a_sweep_becomes_a_data_set(files):
 
 
 def test_what_the_program_cannot_use_is_named(files):
-    (files / 'bad.yaml').write_text('width: 0\nheigth: 3\n')
+    (files / 'bad.yaml').write_text('width: 0\nheigth: 3\ndepth_encoding: 8UC1\nnoise: {axial: 3}\n')
+    (files / 'encoding.yaml').write_text('depth_encoding: 16UC1\nseed: 18446744073709551616\n')
     (files / 'full').mkdir()
     (files / 'full/file').touch()
     scene = files / 'scene.yaml'
     for arguments, lines in (
             ([scene, '--output', files / 'a'], ['frames: nothing has placed hand']),
             ([scene, '--output', files / 'a', '--camera', files / 'bad.yaml', '--views', 0, '--rate', -1, '--duration', -2],
-             ['bad.yaml: heigth: unknown key', '--views: 0; allowed: ', '--rate: -1; allowed: ', '--duration: -2; allowed: ', 'frames: nothing has']),
+             ['bad.yaml: heigth: unknown key', 'bad.yaml: width: 0; allowed: ', "bad.yaml: depth_encoding: '8UC1'; allowed: 32FC1 | 16UC1",
+              'bad.yaml: noise.axial: 3; allowed: ', '--views: 0; allowed: ', '--rate: -1; allowed: ', '--duration: -2; allowed: ', 'frames: nothing has']),
             ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--rate', 1000], ['--rate: 1000; allowed: at most 1 / time_step']),
             ([scene, '--output', files / 'a', '--motion', files / 'none.csv'], ['none.csv']),
-            ([scene, '--output', files / 'full', '--motion', files / 'motion.csv'], ['a directory that is new or empty']),
+            ([scene, '--output', files / 'full', '--motion', files / 'motion.csv', '--views', 0],
+             [f'--output: {files}/full; allowed: a directory that is new or empty', '--views: 0; ']),
+            ([scene, '--output', files / 'full/file/set', '--motion', files / 'motion.csv'],
+             [f'--output: {files}/full/file/set: Not a directory; allowed: a directory that is new or empty, where files can be written']),
+            ([scene, '--output', files / 'a', '--motion', files / 'motion.csv', '--seed', 2**64, '--camera', files / 'encoding.yaml'],
+             ['--seed: 18446744073709551616; allowed: an integer from 0 to 18446744073709551615',
+              'encoding.yaml: seed: 18446744073709551616; allowed: an integer (from 0 to 18446744073709551615)']),
             (['--sweep', files / 'sweep.yaml', '--output', files / 'a', '--rate', 3], ['--rate: given with --sweep; allowed: rate in']),
             ([files / 'none.yaml', '--output', files / 'a'], ['scene: cannot read']),
             (['--output', files / 'a'], ['SCENE.yaml']),
@@ -269,3 +388,15 @@ def test_what_the_program_cannot_use_is_named(files):
             assert line in errors
         assert 'Traceback' not in errors
         assert not (files / 'a').exists()
+
+
+@pytest.mark.parametrize('method', ['add', 'close'])
+def test_what_cannot_be_written_is_named(files, monkeypatch, capsys, method):
+    def fail(*_, **__):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), str(files / 'set/annotations.json'))
+
+    monkeypatch.setattr(coco.Dataset, method, fail)
+    monkeypatch.setattr(signal, 'signal', lambda *_: None)
+    status = coco_command.main([str(files / 'scene.yaml'), '--motion', str(files / 'motion.csv'), '--output', str(files / 'set'), '--duration', '0'])
+    count = 0 if method == 'add' else 1
+    assert (status, capsys.readouterr().err) == (3, f'cable_coco: --output: {files}/set: No space left on device; {count} images are in {files}/set\n')

@@ -26,9 +26,6 @@ using view::CameraDesc;
 using view::CameraModel;
 using view::SensorModel;
 
-/// Between the seeds of worlds: so far apart that other seeds do not meet them. The first world has the camera's.
-constexpr std::uint64_t world_stride = 0x9e3779b97f4a7c15;
-
 std::vector<std::string> errors_of(const CameraDesc& desc, const SensorModel& sensor) {
   std::vector<std::string> errors = validate(desc);
   for (const std::string& error : validate(sensor, desc.near, desc.far)) errors.push_back(error);
@@ -92,12 +89,13 @@ class CompiledCamera {
   const CameraModel& model() const { return lens_.model(); }
 
   /// Images of each drawing, and the truth of each where that is wanted: a dict of arrays whose first axis is that of the
-  /// drawings.
-  py::dict render(const py::capsule& capsule, const std::array<double, 7>& pose_numbers, std::uint64_t seed,
-                  const std::vector<std::uint64_t>& images, const std::vector<std::string>& wanted, int threads) {
+  /// drawings. `noise`: seed and image of the NoiseSeed of each.
+  py::dict render(const py::capsule& capsule, const std::array<double, 7>& pose_numbers,
+                  const std::vector<std::pair<std::uint64_t, std::uint64_t>>& noise, const std::vector<std::string>& wanted,
+                  int threads) {
     const Drawings& drawings = drawings_in(capsule);
     const Pose pose = pose_of(pose_numbers);
-    if (images.size() != drawings.size()) throw py::value_error("images: one for each world");
+    if (noise.size() != drawings.size()) throw py::value_error("noise: one for each world");
     py::dict result;
     std::vector<view::ImageBuffers> buffers(drawings.size());
     std::vector<std::vector<view::CableTruth>> truth;
@@ -125,7 +123,7 @@ class CompiledCamera {
         const auto look = [&](std::size_t i) {
           const auto stage = std::make_shared<const view::Stage>(drawings[i], i == 0 ? before.get() : first.get());
           if (i == 0) first = stage;
-          if (wants_images) view::render(*stage, lens_, pose, sensor_, {seed + i * world_stride, images[i]}, buffers[i]);
+          if (wants_images) view::render(*stage, lens_, pose, sensor_, {noise[i].first, noise[i].second}, buffers[i]);
           if (!truth.empty()) truth[i] = view::find_truth(*stage, model(), pose);
         };
         look(0);
@@ -199,6 +197,23 @@ py::dict presets() {
   return all;
 }
 
+/// (n, 2) [pixels] Of points in the optical frame, (n, 3); as view::project, with fx, fy, cx, cy and a distortion.
+py::array_t<double> project(const std::array<double, 4>& intrinsics, const std::array<double, 5>& distortion,
+                            const std::vector<std::array<double, 3>>& points) {
+  CameraModel model;
+  model.fx = intrinsics[0];
+  model.fy = intrinsics[1];
+  model.cx = intrinsics[2];
+  model.cy = intrinsics[3];
+  model.distortion = distortion;
+  py::array_t<double> pixels(std::vector<py::ssize_t>{static_cast<py::ssize_t>(points.size()), 2});
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::array<double, 2> pixel = view::project(model, Vector3(points[i].data()));
+    std::copy(pixel.begin(), pixel.end(), pixels.mutable_data(static_cast<py::ssize_t>(i), 0));
+  }
+  return pixels;
+}
+
 py::list labels(const py::capsule& capsule) {
   py::list all;
   for (const view::Drawing& drawing : drawings_in(capsule)) all.append(view::labels(drawing));
@@ -224,9 +239,10 @@ PYBIND11_MODULE(_camera, module) {
                                const CameraModel& model = camera.model();
                                return py::make_tuple(model.fx, model.fy, model.cx, model.cy);
                              })
-      .def("render", &CompiledCamera::render, py::arg("drawings"), py::arg("pose"), py::arg("seed"), py::arg("images"),
-           py::arg("wanted"), py::arg("threads"));
+      .def("render", &CompiledCamera::render, py::arg("drawings"), py::arg("pose"), py::arg("noise"), py::arg("wanted"),
+           py::arg("threads"));
   module.def("look_at", &look_at, py::arg("eye"), py::arg("target"), py::arg("up") = py::none());
+  module.def("project", &project, py::arg("intrinsics"), py::arg("distortion"), py::arg("points"));
   module.def("presets", &presets);
   module.def("labels", &labels, py::arg("drawings"));
 }

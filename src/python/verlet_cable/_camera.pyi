@@ -1,5 +1,8 @@
 from typing import Any, Sequence
 
+import numpy as np
+from numpy.typing import NDArray
+
 class CompiledCamera:
     def __init__(
         self, *, width: int, height: int, horizontal_fov: float, near: float, far: float, distortion: Sequence[float],
@@ -8,7 +11,7 @@ class CompiledCamera:
     @property
     def intrinsics(self) -> tuple[float, float, float, float]: ...
     def render(
-        self, drawings: Any, pose: Sequence[float], seed: int, images: Sequence[int], wanted: Sequence[str], threads: int,
+        self, drawings: Any, pose: Sequence[float], noise: Sequence[tuple[int, int]], wanted: Sequence[str], threads: int,
     ) -> dict[str, Any]: ...
 
 most_pixels: int
@@ -18,5 +21,6 @@ def errors(
     axial: Sequence[float], dropout_angle: float, baseline: float, disparity_step: float, edge_dropout: float, edge_step: float,
 ) -> list[str]: ...
 def look_at(eye: Sequence[float], target: Sequence[float], up: Sequence[float] | None = None) -> list[float]: ...
+def project(intrinsics: Sequence[float], distortion: Sequence[float], points: Sequence[Sequence[float]]) -> NDArray[np.float64]: ...
 def presets() -> dict[str, tuple[dict[str, Any], dict[str, Any], str]]: ...
 def labels(drawings: Any) -> list[list[str]]: ...

@@ -18,6 +18,7 @@ _BAD_INPUT, _STOPPED = 2, 3
 _OF_CAMERA = ('preset', 'width', 'height', 'horizontal_fov', 'near', 'far', 'distortion', 'noise', 'seed')
 # camera_node's files may have them, too.
 _OF_NODE = ('state', 'optical_frame', 'camera_info_topic', 'rate', 'depth_encoding', 'shadows', 'labels', 'robot_description', 'tf_timeout')
+_DEPTH_ENCODINGS = ('32FC1', '16UC1')  # of camera_node; the PNG files have millimetres with both
 _NEAREST, _FURTHEST = 0.8, 1.6  # by default, over the distance from which all cables just fit into the image
 _LEAST_SIZE = 0.05              # [m] of what is seen
 _NEAR, _FAR = 0.01, 1000.0      # [m] of the camera, by default
@@ -38,26 +39,27 @@ def main(arguments=None):
     """The exit status: 0 when all images are written, 2 for bad input, 3 when it had to stop; the images until then are whole."""
     options = _options(arguments)
     try:
-        from verlet_cable.camera import coco  # not there everywhere
+        import verlet_cable.camera.coco  # noqa: F401, not there everywhere
     except ImportError as error:
         print(f'cable_coco: {error}', file=sys.stderr)
         return _BAD_INPUT
     try:
         camera, sweep, samples = _read(options)
-        dataset = coco.Dataset(options.output, options.keypoints, options.seed)
-    except (SweepError, ValueError, OSError) as error:  # SceneError is a ValueError
-        for line in getattr(error, 'errors', None) or str(error).splitlines():
+        dataset = _new_dataset(options)
+    except SweepError as error:
+        for line in error.errors:
             print(f'cable_coco: {line}', file=sys.stderr)
         return _BAD_INPUT
     signal.signal(signal.SIGTERM, _interrupt)
     reason, failed = '', 0
-    with dataset:
-        try:
-            failed = _write(options, camera, sweep, samples, dataset)
-        except KeyboardInterrupt:
-            reason = 'interrupted'
-        except OSError as error:
-            reason = str(error)
+    try:
+        with dataset:
+            try:
+                failed = _write(options, camera, sweep, samples, dataset)
+            except KeyboardInterrupt:
+                reason = 'interrupted'
+    except OSError as error:
+        reason = f'--output: {options.output}: {_why(error)}'
     if failed and options.sweep is None:
         reason = 'it had to stop'
     if reason:
@@ -89,8 +91,9 @@ def _options(arguments):
                         help='[m] how far it is away: between these (default: such that all cables are about as large as the image)')
     parser.add_argument('--elevation', metavar=('A', 'B'), nargs=2, type=_number, default=(15.0, 75.0),
                         help='[degree] above the horizon: between these (default: 15 75)')
-    parser.add_argument('--keypoints', metavar='N', type=int, default=21, help='so many nodes of each cable (default: 21)')
-    parser.add_argument('--seed', metavar='N', type=int, default=0, help='of places, light and looks (default: 0)')
+    parser.add_argument('--keypoints', metavar='N', type=int, default=21, help='so many points along each cable (default: 21)')
+    parser.add_argument('--seed', metavar='N', type=int, default=0,
+                        help='of places, light and looks, and, with the seed of the camera, of noise (default: 0)')
     parser.add_argument('--scene-looks', action='store_true', help="the scene's colors, and one light")
     return parser.parse_args(arguments)
 
@@ -104,15 +107,20 @@ def _number(text):
 
 def _read(options):
     """Raises SweepError with all that is wrong."""
+    from verlet_cable.camera import coco
+    from verlet_cable.camera.camera import LARGEST_SEED
     errors = []
+    _collected(errors, lambda: _check_output(options.output))
     camera = _collected(errors, lambda: _camera_of(options.camera))
-    for name, value, least, most in (('--views', options.views, 1, 10000), ('--keypoints', options.keypoints, 2, 10000),
-                                     ('--seed', options.seed, 0, 1 << 64)):
+    for name, value, least, most in (('--views', options.views, 1, 10000), ('--keypoints', options.keypoints, 2, coco.MOST_KEYPOINTS),
+                                     ('--seed', options.seed, 0, LARGEST_SEED)):
         if not least <= value <= most:
             errors.append(rejected(name, str(value), f'an integer from {least} to {most}'))
-    for name, pair, least, most in (('--distance', options.distance, 1e-3, 1e6), ('--elevation', options.elevation, -89, 89)):
+    for name, pair, unit, (least, most) in (('--distance', options.distance, 'm', coco.DISTANCES),
+                                            ('--elevation', options.elevation, 'degree', coco.ELEVATIONS)):
         if pair and not least <= pair[0] <= pair[1] <= most:
-            errors.append(rejected(name, f'{pair[0]:g} {pair[1]:g}', f'two numbers, the larger one last (from {least:g} to {most:g})'))
+            allowed = f'two numbers [{unit}], the larger one last (from {least:g} to {most:g})'
+            errors.append(rejected(name, f'{pair[0]:g} {pair[1]:g}', allowed))
     what = _collected(errors, lambda: _what_runs(options))
     if errors:
         raise SweepError(errors)
@@ -131,6 +139,35 @@ def _collected(errors, read):
     return None
 
 
+def _check_output(path):
+    from verlet_cable.camera import coco
+    try:
+        is_usable = coco.is_new_or_empty(path)
+    except OSError as error:
+        raise SweepError([_output_error(path, error)]) from error
+    if not is_usable:
+        raise SweepError([rejected('--output', path or "''", coco.NEW_DIRECTORY)])
+
+
+def _new_dataset(options):
+    from verlet_cable.camera import coco
+    try:
+        return coco.Dataset(options.output, options.keypoints, options.seed)
+    except OSError as error:
+        raise SweepError([_output_error(options.output, error)]) from error
+    except (ImportError, ValueError) as error:  # no Pillow; or another one has made the directory meanwhile
+        raise SweepError([str(error)]) from error
+
+
+def _output_error(path, error):
+    from verlet_cable.camera import coco
+    return rejected('--output', f'{path}: {_why(error)}', f'{coco.NEW_DIRECTORY}, where files can be written')
+
+
+def _why(error):
+    return error.strerror or str(error)
+
+
 def _camera_of(path):
     from verlet_cable.camera import Camera
     if path is None:
@@ -140,15 +177,16 @@ def _camera_of(path):
         keys = with_numbers(parse(file.read(), path, errors)) or {}
     if not errors and not isinstance(keys, dict):
         errors.append(rejected(path, shown(keys), 'keys ' + ', '.join(_OF_CAMERA)))
-    if not errors:
-        errors += [f'{path}: ' + unknown_key(key, shown(keys[key]), _OF_CAMERA) for key in keys if key not in _OF_CAMERA + _OF_NODE]
     if errors:
         raise SweepError(errors)
+    errors += [unknown_key(key, shown(keys[key]), _OF_CAMERA) for key in keys if key not in _OF_CAMERA + _OF_NODE]
+    if 'depth_encoding' in keys and keys['depth_encoding'] not in _DEPTH_ENCODINGS:
+        errors.append(rejected('depth_encoding', shown(keys['depth_encoding']), ' | '.join(_DEPTH_ENCODINGS)))
     arguments = {key: value for key, value in keys.items() if key in _OF_CAMERA and not (key == 'preset' and not value)}
-    try:
-        return Camera(**arguments)
-    except ValueError as error:
-        raise SweepError([f'{path}: {line}' for line in str(error).splitlines()]) from error
+    camera = _collected(errors, lambda: Camera(**arguments))
+    if errors:
+        raise SweepError([f'{path}: {line}' for line in errors])
+    return camera
 
 
 def _what_runs(options):

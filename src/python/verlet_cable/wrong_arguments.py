@@ -1,6 +1,7 @@
 """What a call says that does not fit: which argument, what was given, and what is allowed. The compiled classes would list signatures."""
 import difflib
 import functools
+import inspect
 import operator
 import re
 
@@ -13,7 +14,7 @@ _NO_DEFAULT = object()
 
 _MISNAMED = re.compile(r'[^\n]*?"((?:[^"\\\n]|\\.)*)"[^"\n]*; allowed: ([^\n]*)')  # name: "ropes"; allowed: rope, wire
 
-_WORDS = {'str': 'text', 'bytes': 'bytes, as save() returns them', 'buffer': 'bytes, as save() returns them',
+_WORDS = {'Any': 'a value', 'str': 'text', 'bytes': 'bytes, as save() returns them', 'buffer': 'bytes, as save() returns them',
           'Dict[str, Dict[str, numpy.ndarray[numpy.float64]]]': "a dict of dicts of numbers, such as {'my_hose': {'drag': 0.1}}",
           'int': 'an integer', 'bool': 'True or False', 'float': 'a number', 'dict': 'a dict',
           'numpy.ndarray[numpy.float64]': 'numbers that are real, as an array or nested sequences'}
@@ -224,6 +225,32 @@ def _explaining(function, has_self):
             raise
         raise TypeError(message)
     return call
+
+
+def _checking(function):
+    parts = []
+    for parameter in list(inspect.signature(function).parameters.values())[1:]:
+        if parameter.kind is parameter.KEYWORD_ONLY and '*' not in parts:
+            parts.append('*')
+        parts.append(f'{parameter.name}: Any' + ('' if parameter.default is parameter.empty else ' = ...'))
+    signature = _Signature(', '.join(parts))
+
+    @functools.wraps(function)
+    def call(self, *args, **kwargs):
+        _, problem = signature.problem(args, kwargs)
+        if problem:
+            raise TypeError(problem)
+        return function(self, *args, **kwargs)
+    return call
+
+
+def explain_names(cls):
+    """Has all public methods of a class that is written in Python say which arguments they take, as `explain` those of compiled ones.
+    What values these may have they say themselves."""
+    for name, attribute in list(vars(cls).items()):
+        if inspect.isfunction(attribute) and (name == '__init__' or not name.startswith('_')):
+            setattr(cls, name, _checking(attribute))
+    return cls
 
 
 def explain(*classes):

@@ -2,14 +2,14 @@
 from __future__ import annotations
 
 import operator
-from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, Callable, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, TypeVar, Union, cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from verlet_cable import _camera
 from verlet_cable.sim import Batch, World
-from verlet_cable.wrong_arguments import meant
+from verlet_cable.wrong_arguments import explain_names, meant
 
 IMAGES = ('depth', 'rgb', 'mask', 'points', 'truth')
 _MOST_THREADS = 1024
@@ -17,7 +17,10 @@ _NOISE = {'axial': (0.0, 0.0, 0.0), 'dropout_angle': 90.0, 'baseline': 0.0, 'dis
 _CAMERA = {'width': 640, 'height': 480, 'horizontal_fov': 1.05, 'near': 0.1, 'far': 10.0, 'distortion': (0.0,) * 5}
 _FURTHEST = 1e9  # [m] as of frames
 _SEEDS = 1 << 64
+LARGEST_SEED = _SEEDS - 1
+_WORLD_STRIDE = 0x9e3779b97f4a7c15  # between the seeds of a batch's worlds: so far apart that other seeds do not meet them
 _NANOSECONDS = 1e9
+_Value = TypeVar('_Value')
 
 
 class Preset(NamedTuple):
@@ -33,6 +36,14 @@ def presets() -> Dict[str, Preset]:
     return {name: Preset(*preset) for name, preset in _camera.presets().items()}
 
 
+class _Numbers(NamedTuple):
+    """Of the images of a data set. seed: the data set's; first: the number of the first of them."""
+
+    seed: int
+    first: int
+
+
+@explain_names
 class Camera:
     """A depth camera at a pose, which sees worlds.
 
@@ -47,8 +58,8 @@ class Camera:
         disparity_step: [pixels] to which disparities are rounded
         edge_dropout: 0 to 1: how often there is no depth beside what is deeper by more than edge_step [m]
 
-    preset: name of a camera from presets(), for what the other arguments leave out. seed: of the noise, an integer. threads: 0: as
-    many as there are cores; the images do not depend on it.
+    preset: name of a camera from presets(), for what the other arguments leave out. seed: of the noise, an integer from 0 to 2^64 - 1.
+    threads: 0: as many as there are cores; the images do not depend on it.
 
     The camera begins at the origin of the fixed frame and looks along its z axis, as all optical frames do; x is to the right in the
     image, y down. Raises ValueError with all that is wrong, a line each.
@@ -71,7 +82,7 @@ class Camera:
                 numbers[key] = checks.numbers(key, value, numbers[key])
         for key, value in checks.noise(noise).items():
             noises[key] = checks.numbers(f'noise.{key}', value, noises[key])
-        self._seed = checks.integer('seed', seed, 0, _SEEDS - 1)
+        self._seed = checks.integer('seed', seed, 0, LARGEST_SEED)
         self._threads = checks.integer('threads', threads, 0, _MOST_THREADS)
         checks.add(_camera.errors(**numbers, **noises))
         self._camera = _camera.CompiledCamera(**numbers, **noises)
@@ -160,13 +171,23 @@ class Camera:
         check_size [m], shininess (0 to 1)}. stripes: whether cables have one that nothing is said of in looks. distinct_colors: where cables or nets have the same color, all of them get others that
         tell them apart. least_radius: [m] thinner cables are drawn so thick. Raises ValueError.
         """
-        wanted = _checked_images(images)
         given = {'light': light, 'background': background, 'looks': looks, 'stripes': stripes, 'distinct_colors': distinct_colors,
                  'least_radius': least_radius}
+        return self._render(world, images, given)
+
+    def _render(
+        self, world: Union[World, Batch], images: Sequence[str], given: Mapping[str, Any], numbers: Optional[_Numbers] = None,
+    ) -> Dict[str, Any]:
+        """As render. numbers: those of the images, of which noise is a function in place of the time."""
+        wanted = _checked_images(images)
         drawings, times = _drawings(world, {key: dict(value) if isinstance(value, Mapping) else value
                                             for key, value in given.items() if value is not None})
-        stamps = [round(time * _NANOSECONDS) for time in times]
-        result: Dict[str, Any] = self._camera.render(drawings, self._pose, self._seed, stamps, wanted, self._threads)
+        if numbers is None:
+            noise = [((self._seed + index * _WORLD_STRIDE) % _SEEDS, round(time * _NANOSECONDS)) for index, time in enumerate(times)]
+        else:
+            seed = int(np.random.SeedSequence([numbers.seed, self._seed]).generate_state(1, np.uint64)[0])
+            noise = [(seed, numbers.first + index) for index in range(len(times))]
+        result: Dict[str, Any] = self._camera.render(drawings, self._pose, noise, wanted, self._threads)
         if 'truth' in result:
             result['truth'] = _joined([_truth(cables) for cables in result['truth']], isinstance(world, Batch))
         if isinstance(world, World):
@@ -200,12 +221,6 @@ def _is_integer(value: Any) -> bool:
     return not isinstance(value, bool)
 
 
-def _integer(name: str, value: Any, least: int = -_SEEDS, most: int = _SEEDS) -> int:
-    if not _is_integer(value) or not least <= operator.index(value) <= most:
-        raise ValueError(_wrong(name, value, f'an integer (from {least} to {most})'))
-    return operator.index(value)
-
-
 class _Checks:
     """Collects what is wrong with arguments; in place of what is wrong others are checked with what is right."""
 
@@ -220,6 +235,14 @@ class _Checks:
             return operator.index(value)
         self.refuse(name, value, f'an integer{unit} (from {least} to {most})')
         return right
+
+    def value(self, read: Callable[[], _Value]) -> _Value:
+        """What `read` returns; where it raises ValueError, nothing that is to be used."""
+        try:
+            return read()
+        except ValueError as error:
+            self._lines += str(error).split('\n')
+            return cast(_Value, None)
 
     def numbers(self, name: str, value: Any, right: Any) -> Any:
         """A float, or a tuple of them; which are allowed the compiled module says."""
@@ -249,8 +272,8 @@ class _Checks:
             raise ValueError('\n'.join([*self._lines, *lines]))
 
 
-def _vector(name: str, value: ArrayLike, size: int) -> NDArray[np.float64]:
-    allowed = f'{size} finite numbers'
+def _vector(name: str, value: ArrayLike, size: int, allowed: str = '') -> NDArray[np.float64]:
+    allowed = allowed or f'{size} finite numbers'
     try:
         numbers = np.asarray(value, dtype=np.float64)
     except (TypeError, ValueError):

@@ -18,16 +18,22 @@ import json
 import os
 import pathlib
 from types import TracebackType
-from typing import Any, Dict, List, Mapping, Optional, Sequence, Tuple, Type, Union
+from typing import Any, Dict, List, Mapping, NamedTuple, Optional, Sequence, Tuple, Type, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from verlet_cable.camera.camera import Camera, _integer, _point, _vector, _wrong
+from verlet_cable import _camera
+from verlet_cable.camera.camera import LARGEST_SEED, Camera, _Checks, _Numbers, _point, _vector, _wrong
 from verlet_cable.sim import Batch, World
+from verlet_cable.wrong_arguments import explain_names
 
 __all__ = ['Dataset', 'crossings']
 
+NEW_DIRECTORY = 'a directory that is new or empty'
+MOST_KEYPOINTS = 10000
+DISTANCES = (1e-3, 1e6)       # [m]
+ELEVATIONS = (-89.0, 89.0)    # [degree]
 _CATEGORY = 1
 _MILLIMETRES = 1000.0
 _NOT_THERE, _HIDDEN, _SEEN = 0, 1, 2
@@ -36,16 +42,17 @@ _LIGHT_ELEVATIONS = (30.0, 90.0)    # [degree]
 _SQUARES = (0.02, 0.5)              # [m]
 
 
+@explain_names
 class Dataset:
     """Writes a data set into the new or empty directory `path`: images/*.png (rgb), masks/*.png (16 bit: numbers of things), depth/*.png
-    (16 bit, millimetres, 0: none), and, when it is closed, annotations.json.
+    (16 bit, millimetres, 0: none, or more than 65.535 m), and, when it is closed, annotations.json.
 
-    keypoints: so many nodes of each cable, evenly from its start to its end, are its keypoints. seed: of what add() varies; image k
-    depends on it and k only.
+    keypoints: so many points of each cable, from its start to its end at equal distances along it, as it is then. seed: of what add() varies, and
+    of noise: in image k both are functions of it and k, and noise also of the camera's seed, but not of the world's time.
 
     annotations.json has what COCO's format has: images, annotations (segmentation as run lengths, bbox, area, keypoints; of each cable
     that has pixels in the image, and of no other) and the category cable; and beside that, of images: time [s], matrix, distortion and pose
-    of the camera, the light, labels and crossings; of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
+    of the camera, the light, labels and crossings (those in the image, of cables that have annotations); of annotations: cable (its name), positions [m] of its keypoints in the optical frame, and
     mask (its number in masks).
     """
 
@@ -55,8 +62,10 @@ class Dataset:
         except ImportError as error:
             raise ImportError(f'verlet_cable.camera.coco: {error}; it needs Pillow (Debian: sudo apt-get install python3-pil; pip install '
                               'pillow)') from error
-        self._keypoints = _integer('keypoints', keypoints, 2, 10000)
-        self._seed = _integer('seed', seed, 0)
+        checks = _Checks()
+        self._keypoints = checks.integer('keypoints', keypoints, 2, MOST_KEYPOINTS)
+        self._seed = checks.integer('seed', seed, 0, LARGEST_SEED)
+        checks.add([])
         self._path = _new_directory(path)
         for name in ('images', 'masks', 'depth'):
             (self._path / name).mkdir(parents=True, exist_ok=True)
@@ -92,14 +101,19 @@ class Dataset:
         if looks is not None and not isinstance(looks, Mapping):
             raise TypeError(_wrong('looks', looks, 'None, or a dict of looks by the names of things'))
         self._require_open()
+        checks = _Checks()
+        place = None if target is None else checks.value(lambda: _point('target', target))
+        distances = checks.value(lambda: _range('distance', distance, DISTANCES, ' [m]'))
+        elevations = checks.value(lambda: _range('elevation', elevation, ELEVATIONS, ' [degree]'))
+        checks.add([])
         random = np.random.default_rng([self._seed, len(self._images)])
-        if target is not None:
-            camera.look_at(*_random_view(random, _point('target', target), distance, elevation))
+        if place is not None:
+            camera.look_at(*_random_view(random, place, distances, elevations))
         labels = camera.labels(world)
         appearance: Dict[str, Any] = _random_appearance(random, labels) if vary_looks else {}
         appearance['looks'] = {**appearance.get('looks', {}), **(looks or {})}
         appearance.update({name: value for name, value in (('light', light), ('background', background)) if value is not None})
-        seen = camera.render(world, ['depth', 'rgb', 'mask', 'truth'], **appearance)
+        seen = camera._render(world, ['depth', 'rgb', 'mask', 'truth'], appearance, _Numbers(self._seed, len(self)))
         of_all: Dict[str, Any] = {'matrix': camera.matrix, 'distortion': camera.distortion, 'pose': camera.pose,
                                   'light': appearance.get('light')}
         if isinstance(world, World):
@@ -153,36 +167,94 @@ class Dataset:
         truth, (height, width) = seen['truth'], seen['mask'].shape
         identity = len(self._images) + 1
         name = f'{identity:08d}.png'
-        depth = np.clip(np.nan_to_num(np.round(seen['depth'] * _MILLIMETRES), nan=0), 0, 65535).astype(np.uint16)
-        for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', depth)):
+        for folder, pixels in (('images', seen['rgb']), ('masks', seen['mask']), ('depth', _in_millimetres(seen['depth']))):
             Image.fromarray(np.ascontiguousarray(pixels)).save(self._path / folder / name, compress_level=1)
+        annotated = {}
+        for number, (cable, nodes) in enumerate(truth.items(), 1):
+            pixels = seen['mask'] == number
+            if pixels.any():
+                annotated[cable] = nodes
+                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels, matrix, distortion))
         self._images.append({
             'id': identity, 'width': width, 'height': height, 'file_name': f'images/{name}', 'mask_file': f'masks/{name}',
             'depth_file': f'depth/{name}', 'time': time, 'matrix': np.asarray(matrix).tolist(),
             'distortion': np.asarray(distortion).tolist(), 'pose': None if pose is None else pose.tolist(), 'light': _plain(light or {}),
-            'labels': labels, 'crossings': crossings(truth)})
-        for number, (cable, nodes) in enumerate(truth.items(), 1):
-            pixels = seen['mask'] == number
-            if pixels.any():
-                self._annotations.append(self._annotation(identity, number, cable, nodes, pixels))
+            'labels': labels, 'crossings': [one for one in crossings(annotated) if _are_in_image(*one['pixel'], width, height)]})
 
-    def _annotation(self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_]) -> Dict[str, Any]:
-        height, width = pixels.shape
-        chosen = np.round(np.linspace(0, len(nodes['u']) - 1, self._keypoints)).astype(int)
-        u, v = nodes['u'][chosen], nodes['v'][chosen]
-        with np.errstate(invalid='ignore'):
-            is_in = (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
-        flags = np.where(is_in, np.where(nodes['visible'][chosen], _SEEN, _HIDDEN), _NOT_THERE)
-        points = np.column_stack([np.where(is_in, u, 0), np.where(is_in, v, 0)])
-        keypoints = [number for (x, y), flag in zip(points.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
+    def _annotation(
+        self, image: int, number: int, cable: str, nodes: Dict[str, Any], pixels: NDArray[np.bool_], matrix: ArrayLike, distortion: ArrayLike,
+    ) -> Dict[str, Any]:
+        points = _points_along(nodes['positions'], self._keypoints)
+        u, v = _projected(points.positions, matrix, distortion)
+        flags = _flags(u, v, points, nodes, pixels)
+        places = np.where((flags > _NOT_THERE)[:, None], np.column_stack([u, v]), 0)
+        keypoints = [number for (x, y), flag in zip(places.tolist(), flags.tolist()) for number in (round(x, 3), round(y, 3), flag)]
         return {'id': len(self._annotations) + 1, 'image_id': image, 'category_id': _CATEGORY, 'iscrowd': 0,
                 'segmentation': {'size': list(pixels.shape), 'counts': _run_lengths(pixels)}, 'area': int(pixels.sum()),
                 'bbox': _box(pixels), 'keypoints': keypoints, 'num_keypoints': int((flags > 0).sum()), 'cable': cable, 'mask': number,
-                'positions': np.round(nodes['positions'][chosen], 6).tolist()}
+                'positions': np.round(points.positions, 6).tolist()}
+
+
+class _Points(NamedTuple):
+    """Of a cable. segment, fraction: on which one they are, and how far on the way to its end."""
+
+    segment: NDArray[np.int64]
+    fraction: NDArray[np.float64]
+    positions: NDArray[np.float64]
+
+
+def _points_along(nodes: NDArray[np.float64], count: int) -> _Points:
+    """At equal distances along the line through nodes, (n + 1, 3), from its start to its end."""
+    lengths = np.linalg.norm(np.diff(nodes, axis=0), axis=1)
+    starts = np.concatenate([[0.0], np.cumsum(lengths)])
+    places = np.linspace(0, starts[-1], count)
+    segment = np.clip(np.searchsorted(starts, places, 'right') - 1, 0, len(lengths) - 1)
+    passed = places - starts[segment]
+    fraction = np.clip(np.divide(passed, lengths[segment], out=np.zeros(count), where=lengths[segment] > 0), 0, 1)
+    part = fraction[:, None]
+    return _Points(segment, fraction, (1 - part) * nodes[segment] + part * nodes[segment + 1])
+
+
+def _projected(points: NDArray[np.float64], matrix: ArrayLike, distortion: ArrayLike) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """u, v [pixels] of points in the optical frame; NaN for what is not in front of the camera."""
+    (fx, _, cx), (_, fy, cy), _ = np.asarray(matrix).tolist()
+    pixels = _camera.project((fx, fy, cx, cy), np.asarray(distortion).tolist(), points.tolist())
+    return pixels[:, 0], pixels[:, 1]
+
+
+def _are_in_image(u: Any, v: Any, width: int, height: int) -> Any:
+    with np.errstate(invalid='ignore'):
+        return (u >= -0.5) & (u < width - 0.5) & (v >= -0.5) & (v < height - 0.5)
+
+
+def _in_millimetres(depth: NDArray[Any]) -> NDArray[np.uint16]:
+    """Of depths [m]; 0 for what has none, or does not fit: as camera_node's 16UC1."""
+    rounded = np.round(depth.astype(np.float64) * _MILLIMETRES)
+    with np.errstate(invalid='ignore'):
+        fits = (rounded >= 1) & (rounded <= np.iinfo(np.uint16).max)
+    return np.where(fits, rounded, 0).astype(np.uint16)
+
+
+def _flags(
+    u: NDArray[np.float64], v: NDArray[np.float64], points: _Points, nodes: Mapping[str, Any], pixels: NDArray[np.bool_],
+) -> NDArray[np.int64]:
+    """Which points of a cable at u, v are seen, hidden, or not in the image. What is known is whether nodes are: a point is seen as the
+    nearer one of the two nodes beside it is; where that is not in the image, as the other one; and where neither is, if its pixel is of
+    the cable."""
+    height, width = pixels.shape
+    is_in, has_node = _are_in_image(u, v, width, height), _are_in_image(nodes['u'], nodes['v'], width, height)
+    is_late = points.fraction > 0.5
+    nearer, other = points.segment + is_late, points.segment + ~is_late
+    of_pixel = np.zeros(len(u), dtype=bool)
+    of_pixel[is_in] = pixels[np.rint(v[is_in]).astype(int), np.rint(u[is_in]).astype(int)]
+    seen = np.select([has_node[nearer], has_node[other]], [nodes['visible'][nearer], nodes['visible'][other]], of_pixel)
+    flags: NDArray[np.int64] = np.where(is_in, np.where(seen, _SEEN, _HIDDEN), _NOT_THERE)
+    return flags
 
 
 def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
-    """Where cables of a `truth` of Camera.render cross in the image, each other or themselves: dicts with pixel [u, v], and over and
+    """Where cables of a `truth` of Camera.render cross as the camera sees them, each other or themselves, also beyond the edges of its
+    image and behind what hides them: dicts with pixel [u, v], and over and
     under, which is behind: [cable, node], the node with its fraction on the way to the next one."""
     truth = _checked_truth(truth)
     names = list(truth)
@@ -217,18 +289,22 @@ def crossings(truth: Mapping[str, Mapping[str, Any]]) -> List[Dict[str, Any]]:
     return found
 
 
-def _new_directory(path: Union[str, bytes, os.PathLike[str]]) -> pathlib.Path:
-    allowed = 'a directory that is new or empty'
-    if not isinstance(path, (str, bytes, os.PathLike)):
-        raise TypeError(_wrong('path', path, f'the path of {allowed}, as text, bytes or os.PathLike'))
+def is_new_or_empty(path: Union[str, bytes, os.PathLike[str]]) -> bool:
+    """Whether there is no such directory, or an empty one."""
     name = os.fsdecode(path)
     try:
         is_name = name != '' and b'\0' not in os.fsencode(name)
     except UnicodeEncodeError:
         is_name = False
-    if not is_name or (os.path.lexists(name) and (not os.path.isdir(name) or os.listdir(name))):
-        raise ValueError(_wrong('path', path, allowed))
-    return pathlib.Path(name)
+    return is_name and (not os.path.lexists(name) or (os.path.isdir(name) and not os.listdir(name)))
+
+
+def _new_directory(path: Union[str, bytes, os.PathLike[str]]) -> pathlib.Path:
+    if not isinstance(path, (str, bytes, os.PathLike)):
+        raise TypeError(_wrong('path', path, f'the path of {NEW_DIRECTORY}, as text, bytes or os.PathLike'))
+    if not is_new_or_empty(path):
+        raise ValueError(_wrong('path', path, NEW_DIRECTORY))
+    return pathlib.Path(os.fsdecode(path))
 
 
 def _numbers(name: str, value: ArrayLike, shape: Tuple[int, ...]) -> NDArray[np.float64]:
@@ -263,7 +339,7 @@ def _checked_images(images: Mapping[str, Any]) -> Dict[str, Any]:
 
 def _checked_truth(truth: Mapping[str, Mapping[str, Any]]) -> Dict[str, Dict[str, NDArray[Any]]]:
     """Its arrays. Raises TypeError, or ValueError."""
-    words = 'a truth as of Camera.render: {cable: {positions: (n + 1, 3), u: (n + 1,), v: (n + 1,)}}'
+    words = 'a truth as of Camera.render: {cable: {positions: (n + 1, 3), u: (n + 1,), v: (n + 1,)}}, of one segment or more'
     if not isinstance(truth, Mapping):
         raise TypeError(_wrong('truth', truth, words))
     checked = {}
@@ -276,7 +352,7 @@ def _checked_truth(truth: Mapping[str, Mapping[str, Any]]) -> Dict[str, Dict[str
             raise ValueError(_wrong(f'truth[{name!r}]', cable, words)) from None
         count = arrays['u'].size
         shapes = [array.shape for array in arrays.values()]
-        if shapes != [(count, 3), (count,), (count,)]:
+        if shapes != [(count, 3), (count,), (count,)] or count < 2:
             raise ValueError(f'truth[{name!r}]: positions, u, v of the shapes {", ".join(map(str, shapes))}; allowed: {words}')
         checked[name] = arrays
     return checked
@@ -313,18 +389,20 @@ def _plain(light: Mapping[str, Any]) -> Dict[str, Any]:
     return {name: np.asarray(value).tolist() for name, value in light.items()}
 
 
-def _range(name: str, value: Tuple[float, float], least: float, most: float) -> Tuple[float, float]:
-    low, high = _vector(name, value, 2)
+def _range(name: str, value: Tuple[float, float], limits: Tuple[float, float], unit: str) -> Tuple[float, float]:
+    least, most = limits
+    allowed = f'two numbers{unit}, the larger one last (from {least:g} to {most:g})'
+    low, high = _vector(name, value, 2, allowed)
     if not least <= low <= high <= most:
-        raise ValueError(_wrong(name, value, f'two numbers, the larger one last (from {least:g} to {most:g})'))
+        raise ValueError(_wrong(name, value, allowed))
     return float(low), float(high)
 
 
 def _random_view(
     random: np.random.Generator, target: NDArray[np.float64], distance: Tuple[float, float], elevation: Tuple[float, float],
 ) -> Tuple[NDArray[np.float64], NDArray[np.float64]]:
-    away = random.uniform(*_range('distance', distance, 1e-3, 1e6))
-    height, around = np.radians(random.uniform(*_range('elevation', elevation, -89, 89))), random.uniform(-np.pi, np.pi)
+    away = random.uniform(*distance)
+    height, around = np.radians(random.uniform(*elevation)), random.uniform(-np.pi, np.pi)
     towards = np.array([np.cos(height) * np.cos(around), np.cos(height) * np.sin(around), np.sin(height)])
     return target + away * towards, target
 
