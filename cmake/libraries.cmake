@@ -82,6 +82,14 @@ function(reuse_precompiled_headers target other)
   endif()
 endfunction()
 
+# compile_in_batches(TARGET): several files at once, which read their headers once. Likewise not with a compiler cache, which keeps
+# single files.
+function(compile_in_batches target)
+  if(TARGET ${target} AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+  endif()
+endfunction()
+
 # What is beside the core runs a little, and is not worth the compiler's time. At -O1 GCC 12 is wrong about empty std::optionals that
 # are copied.
 set(options_beside_the_core $<$<CONFIG:Release>:-O1> $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)

@@ -23,6 +23,14 @@ struct GuidedFlow {
   double held_length = 1;               ///< [m] over which it is given back
 };
 
+/// From one to another by a part of the way.
+inline double mean(double a, double b, double part) {
+  return a + part * (b - a);
+}
+inline std::array<double, 2> mean(const std::array<double, 2>& a, const std::array<double, 2>& b, double part) {
+  return {mean(a[0], b[0], part), mean(a[1], b[1], part)};
+}
+
 /// Whether something holds a flow.
 inline bool resists(const GuidedFlow& flow) {
   return flow.friction > 0 || flow.resistance > 0 || flow.is_blocked[0] || flow.is_blocked[1];

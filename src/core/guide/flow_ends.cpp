@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "guide/flow.h"
 #include "rod/bending_memory.h"
 #include "rod/cable_stepper.h"
 #include "rod/rod_frames.h"
@@ -9,14 +10,6 @@
 namespace verlet_cable {
 
 namespace {
-
-double mean(double a, double b, double part) {
-  return a + part * (b - a);
-}
-
-std::array<double, 2> mean(const std::array<double, 2>& a, const std::array<double, 2>& b, double part) {
-  return {mean(a[0], b[0], part), mean(a[1], b[1], part)};
-}
 
 /// What the material at the guide's nodes has: where it comes from, there it was.
 template <class T>

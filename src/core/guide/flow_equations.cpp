@@ -2,6 +2,7 @@
 #include <cmath>
 #include <utility>
 
+#include "guide/flow.h"
 #include "rod/cable_stepper.h"
 #include "verlet_cable/core/cable_materials.h"
 
@@ -13,10 +14,6 @@ namespace {
 constexpr int most_changes = 8;
 /// [m/s] Against its friction nothing flows faster.
 constexpr double turned_round = 1e-9;
-
-double mean(double a, double b, double part) {
-  return a + part * (b - a);
-}
 
 /// With which what a guide holds drives a way, whose work is what it gives back [N], and how that grows with the way [N/m]: with
 /// the parts p and q of its length at the start and the end, -E ((1 - q²)² - (1 - p²)²) / (q - p).

@@ -24,7 +24,7 @@ constexpr double last_settling_step = 1e6;
 constexpr int maximum_settling_steps = 2000;
 /// From one step to the next; the second once a step was too long, to come back slowly to what was.
 constexpr double fastest_growth = 4, slow_growth = 1.5;
-constexpr int easy_iterations = 5;
+constexpr int few_iterations = 5;
 constexpr int calm_steps = 50;
 /// So often nodes go back through guides; then they stay where they are: a guide may be in equilibrium just where one passes.
 constexpr int most_returns = 3;
@@ -359,7 +359,7 @@ bool Settling::relax(double h, double longest, int steps, Approach& approach) {
       failed = true;
     } else {
       failed = false;
-      if (substep.iterations <= easy_iterations) growth = fastest_growth;
+      if (substep.iterations <= few_iterations) growth = fastest_growth;
       // A fold that opens is followed: longer steps would hold on to it.
       if (lies || acceleration < last) h = std::min(h * std::max(factor, 1.0), longest);
       last = acceleration;
