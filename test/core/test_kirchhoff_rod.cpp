@@ -288,7 +288,9 @@ TEST(KirchhoffRod, IsKirchhoffsBetweenClampsInSpace) {
     for (const int n : {20, 40, 80}) {
       const double now = distance(n);
       EXPECT_LT(now, 1.3e-3 * 400 / (n * n)) << n;  // 1e-3 of the length
-      if (last > 0) EXPECT_NEAR(std::log2(last / now), 2, 0.1) << n;
+      if (last > 0) {
+        EXPECT_NEAR(std::log2(last / now), 2, 0.1) << n;
+      }
       last = now;
     }
   };

@@ -8,6 +8,7 @@
 #include "cable_fit/cable_parameters.h"
 #include "cable_fit/input_errors.h"
 #include "cable_fit/supposed.h"
+#include "known_rod.h"
 #include "synthetic.h"
 
 namespace verlet_cable::cable_fit {
@@ -87,6 +88,25 @@ TEST(Waypoints, LeadToThePredictionsOfTheWholeWay) {
     ASSERT_NE(waypoints.prediction.positions, whole.positions) << k;
   }
   EXPECT_GT(later, errors.count() / 3);
+}
+
+/// What is seen of damping where hands move slowly is how the noise of the start decays: it seemed to be determined, four times
+/// too large.
+TEST(SlowHands, DoNotTellHowBendingIsDamped) {
+  enum { stiffness, damping };
+  for (const double pace : {0.12, 1.0}) {
+    std::vector<Recording> recordings;
+    for (const unsigned take : {0U, 1U})
+      recordings.push_back(with_noise(recording_of_rod(101 + take, pace, 2, 48), 0.002, 1000 + take));
+    const FoundRod rod = find_rod(recordings, 24);
+    const std::vector<Confidence>& confidence = rod.estimate.confidence;
+    EXPECT_TRUE(confidence[stiffness].told) << pace;
+    EXPECT_LT(std::abs(rod.estimate.values[stiffness] - value_of_rod(stiffness)), confidence[stiffness].half_width) << pace;
+    EXPECT_EQ(confidence[damping].told, pace == 1.0) << pace;
+    if (confidence[damping].told) {
+      EXPECT_LT(std::abs(rod.estimate.values[damping] - value_of_rod(damping)), confidence[damping].half_width);
+    }
+  }
 }
 
 }  // namespace

@@ -30,6 +30,9 @@ constexpr double short_step = 0.1;
 /// with recordings of a known rod (fit_coverage).
 constexpr double of_direction = 0.15;
 constexpr int pairs = 4;  ///< of samples
+/// Of a parameter's information: where so much of it is noise of slopes, it is not determined. In recordings of a known rod it is
+/// at most an eighth where hands swing, and a half of that on bending damping where they move slowly.
+constexpr double most_noise = 0.3;
 /// Slopes by the inputs are found anew at every so manieth step.
 constexpr int steps_with_slopes = 2;
 /// A width that many parameters have in common is this part of what is likely at least.
@@ -109,6 +112,7 @@ class Search {
       if (improve()) break;
     }
     correct_for_what_is_supposed();
+    find_noise_of_slopes();
     return {values_, confidence(), usual_.settings.marker_places};
   }
 
@@ -290,6 +294,45 @@ class Search {
     for (Eigen::Index k = 0; k < parameters(); ++k) correction_[k] = values_[k] - before[k];
   }
 
+  /// Where the inputs' errors are not known, slopes are not, either: those at the likeliest errors have noise, which looks like
+  /// information. A motion of which there is none in truth, but by the noise of a start, seems to tell how it is damped. So much
+  /// more slopes tell in the mean over what is possible of the inputs, by pairs of samples that are opposite.
+  void find_noise_of_slopes() {
+    std::mt19937_64 random(2);
+    std::normal_distribution<double> normal(0, 1);
+    noise_of_slopes_ = Eigen::MatrixXd::Zero(parameters(), parameters());
+    std::vector<Eigen::LLT<Eigen::MatrixXd>> solvers;
+    for (std::size_t i = 0; i < recordings(); ++i) solvers.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision());
+    for (int pair = 0; pair < pairs; ++pair) {
+      Vectors samples;
+      for (std::size_t i = 0; i < recordings(); ++i) {
+        Eigen::VectorXd numbers(inputs_[i].count());
+        for (double& number : numbers) number = normal(random);
+        samples.emplace_back(solvers[i].matrixU().solve(numbers));
+      }
+      std::array<Slopes, 2> sides;
+      for (const int side : {0, 1}) {
+        Vectors errors;
+        for (std::size_t i = 0; i < recordings(); ++i) errors.push_back(errors_[i] + (side == 0 ? 1 : -1) * samples[i]);
+        sides[side] = slopes(values_, errors, static_cast<Eigen::Index>(single_.size()),
+                             [&](std::size_t, Eigen::Index k, std::vector<double>& changed, Eigen::VectorXd&) {
+                               changed[single_[k]] += step_of(single_[k]);
+                               return step_of(single_[k]);
+                             });
+      }
+      for (std::size_t i = 0; i < recordings(); ++i)
+        noise_of_slopes_(single_, single_) +=
+            without_inputs(0.5 * (sides[0].matrices[i] - sides[1].matrices[i]), input_slopes_[i], solvers[i]) / pairs;
+    }
+  }
+
+  /// What slopes tell of parameters, the inputs' errors being eliminated.
+  Eigen::MatrixXd without_inputs(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& by_input,
+                                 const Eigen::LLT<Eigen::MatrixXd>& solver) const {
+    const Eigen::MatrixXd coupling = by_input.transpose() * slopes / variance_;
+    return slopes.transpose() * slopes / variance_ - coupling.transpose() * solver.solve(coupling);
+  }
+
   /// Errors of segments and of time steps go with the square of their lengths: they cancel from two simulations, one of which has
   /// them half as long (Richardson's extrapolation).
   void find_differences() {
@@ -429,16 +472,19 @@ class Search {
     Eigen::MatrixXd scatter = information;
     const int count = static_cast<int>(recordings());
     for (std::size_t i = 0; i < recordings(); ++i) {
-      const Eigen::MatrixXd& slopes = slopes_[i];
-      const Eigen::MatrixXd known = inputs_[i].precision();
-      const Eigen::MatrixXd coupling = input_slopes_[i].transpose() * slopes / variance_;
-      const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance_ + known);
-      information += slopes.transpose() * slopes / variance_ - coupling.transpose() * solver.solve(coupling);
-      add_scatter(slopes, differences_[i] / variance_, count, scatter);
+      const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance_ + inputs_[i].precision());
+      information += without_inputs(slopes_[i], input_slopes_[i], solver);
+      add_scatter(slopes_[i], differences_[i] / variance_, count, scatter);
     }
+    std::vector<Eigen::Index> noisy;
+    for (Eigen::Index k = 0; k < parameters(); ++k)
+      if (noise_of_slopes_(k, k) > most_noise * information(k, k)) noisy.push_back(k);
+    information -= noise_of_slopes_;
     const Eigen::VectorXd scale = scale_of(information);
     const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_scaled(information, scale) * scale.asDiagonal();
-    return confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, count);
+    std::vector<Confidence> result = confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, count);
+    for (const Eigen::Index k : noisy) result[k] = {infinity, false};
+    return result;
   }
 
   /// The parameters, with what the noise of the hands' directions does to them beyond what is corrected, and with a correction as
@@ -462,6 +508,7 @@ class Search {
   double likely_width_ = 0;                         // of the former, before they are looked at
   Eigen::VectorXd pull_;                            // of what is supposed, on the parameters
   Eigen::VectorXd correction_;                      // of the parameters, by it
+  Eigen::MatrixXd noise_of_slopes_;                 // what they seem to tell of parameters by it
   Vectors errors_;                                  // a recording
   double noise_variance_ = 0;                       // [m^2] of a coordinate
   double mean_variance_ = 0, variance_ = 0;         // [m^2] of a mean that is compared: by noise, and as it counts
@@ -483,7 +530,7 @@ int most_simulations_with_input_errors(const Problem& problem, const std::vector
   for (const int i : recordings)
     count += most_steps * (InputErrors(problem.recordings[i], problem.inputs[i], variance).count() + 1 +
                            static_cast<Eigen::Index>(problem.parameters.size() + 3)) +
-             2 * pairs * static_cast<Eigen::Index>(problem.parameters.size() + 1) + 2;
+             4 * pairs * static_cast<Eigen::Index>(problem.parameters.size() + 1) + 2;
   return static_cast<int>(count);
 }
 
