@@ -27,8 +27,8 @@ constexpr double fastest_growth = 2, slow_growth = 1.3;
 /// ever.
 constexpr double falling_growth = 1.02;
 constexpr int calm_steps = 3;
-/// What moves by less in a step of this length [s] stands, too: rounding may keep longer ones from converging.
-constexpr double long_step = 100;
+/// What has moved by less in every step of so long a time [s] stands, too: rounding may keep longer ones from converging.
+constexpr double long_time = 100;
 constexpr double settled_displacement = 1e-6;  // radii
 /// Where there is something to touch, no node goes further at a time than this, in radii.
 constexpr double settling_reach = 1;
@@ -57,7 +57,7 @@ BodySettling::BodySettling(const Island& island, State& state, Workspace& worksp
 bool BodySettling::settle() {
   const FlushDenormals flush_denormals;
   hold_still();
-  double h = first_step, last = infinity, growth = fastest_growth;
+  double h = first_step, last = infinity, growth = fastest_growth, stood = 0;
   const double size = size_of(island_, state_);
   double work_left = std::max(most_iterations * size, short_work);
   int calm = 0;
@@ -72,7 +72,8 @@ bool BodySettling::settle() {
     }
     const double acceleration = 2 * outcome.displacement / (h * h);
     const bool stands = !outcome.touches || outcome.displacement < settled_contact * radius_;
-    const bool is_long = h >= last_step || (h >= long_step && outcome.displacement < settled_displacement * radius_);
+    stood = outcome.displacement < settled_displacement * radius_ ? stood + h : 0;
+    const bool is_long = h >= last_step || stood >= long_time;
     calm = acceleration < settled_acceleration && stands && (outcome.touches || is_long) ? calm + 1 : 0;
     const bool calms = outcome.touches || acceleration < last || h < first_step;
     h = std::min((calms ? growth : falling_growth) * h, last_step);
