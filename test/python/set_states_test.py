@@ -314,11 +314,12 @@ def test_a_taut_cable_has_the_positions_that_it_has(distance):
     assert abs(world.positions('rope') - before).max() < 3e-5
 
 
-def test_where_nothing_is_given_nothing_changes():
-    world = world_of(ATWOOD)
+@pytest.mark.parametrize('scene, names', [(ATWOOD, ('rope', 'left')), (HARNESS, ('trunk', 'branch'))])
+def test_where_nothing_is_given_nothing_changes(scene, names):
+    world = world_of(scene)
     world.step(50)
     before = world.save()
-    for name in ('rope', 'left'):
+    for name in names:
         world.set_state(name)
     assert world.save() == before
 

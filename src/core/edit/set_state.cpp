@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <set>
 #include <string>
 #include <utility>
 
+#include "edit/joined_cables.h"
 #include "edit/problems.h"
 #include "guide/node_passing.h"
 #include "guide/side.h"
@@ -37,11 +37,13 @@ constexpr double same_pose = 1e-9;
 using OfCable = edit::SetState::OfCable;
 using OfBody = edit::SetState::OfBody;
 
-bool gives_something(const OfCable& of) {
-  return of.positions || of.velocities;
-}
 bool gives_something(const OfBody& of) {
   return of.pose || of.velocity || of.angular_velocity;
+}
+
+/// Errors then name the thing.
+bool is_of_several(const edit::SetState& set) {
+  return set.cables.size() + set.bodies.size() + set.guides.size() > 1;
 }
 
 /// Of vectors for each node [m], [m/s].
@@ -127,41 +129,6 @@ void put_body(const Pose& pose, int index, State& state) {
 void forget_motion(BodyProgress& progress) {
   progress.acceleration = progress.angular_acceleration = Vector3::Zero();
   progress.has_moved = false;
-}
-
-/// The attachments by which a cable is joined at the junctions that it has placed, as the first of theirs, and that nothing but
-/// cables holds: they go with it.
-std::vector<int> joints_that_go_with(int cable, const State& state) {
-  std::vector<int> joints;
-  std::set<int> seen;
-  for (int a = 0; a < static_cast<int>(state.attachments.size()); ++a) {
-    const Attachment& attachment = state.attachments[a];
-    if (!attachment.is_junction || !seen.insert(attachment.holder).second || attachment.body != cable_id(cable)) continue;
-    if (state.body_progress[attachment.holder].holders.empty()) joints.push_back(a);
-  }
-  return joints;
-}
-
-/// Cables that what is set takes along: joined at such a junction, and given no positions themselves.
-std::vector<char> cables_that_follow(const std::vector<OfCable>& set, const State& state) {
-  std::vector<char> follows(state.cables.size(), 0);
-  for (const OfCable& of : set)
-    for (const int joint : joints_that_go_with(of.cable, state))
-      for (const Attachment& a : state.attachments)
-        if (a.holder == state.attachments[joint].holder && a.body.is_cable()) follows[a.body.index] = 1;
-  for (const OfCable& of : set)
-    if (of.positions) follows[of.cable] = 0;
-  return follows;
-}
-
-/// In the order in which they were joined: what a junction goes with comes before what it holds.
-std::vector<OfCable> trunks_first(std::vector<OfCable> set, const State& state) {
-  const auto place = [&](const OfCable& of) {
-    return std::find_if(state.attachments.begin(), state.attachments.end(),
-                        [&](const Attachment& a) { return a.is_junction && a.body == cable_id(of.cable); });
-  };
-  std::stable_sort(set.begin(), set.end(), [&](const OfCable& a, const OfCable& b) { return place(a) < place(b); });
-  return set;
 }
 
 /// What holds a cable now but for some attachments.
@@ -307,7 +274,7 @@ bool let_through(const edit::SetState::OfGuide& set, const SpanShapes& shapes, S
 }  // namespace
 
 EditResult World::Implementation::apply(const edit::SetState& set) {
-  Problems problems(set.cables.size() + set.bodies.size() + set.guides.size() > 1);
+  Problems problems(is_of_several(set));
   std::vector<char> is_changed(state.cables.size(), 0);
   for (const OfCable& of : set.cables) {
     if (of.cable < 0 || of.cable >= static_cast<int>(state.cables.size()))
@@ -412,10 +379,10 @@ EditResult World::Implementation::set_checked(const edit::SetState& set, std::ve
     return refuse("arc_length: too little of the cable " + name +
                   " between what holds it; allowed: where all that hold it reach");
   }
-  Problems problems(set.cables.size() + set.bodies.size() + set.guides.size() > 1);
-  for (const OfCable& of : trunks_first(set.cables, before)) {
-    problems.of(before.cables[of.cable].model->name);
-    put_cable(of, problems);
+  Problems problems(is_of_several(set));
+  for (const OfCable* of : trunks_first(set.cables, before)) {
+    problems.of(before.cables[of->cable].model->name);
+    put_cable(*of, problems);
     if (!problems.text().empty()) return refuse(problems.text());
   }
   for (std::size_t c = 0; c < is_changed.size(); ++c) {

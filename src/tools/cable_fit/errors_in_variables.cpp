@@ -78,6 +78,14 @@ Eigen::VectorXd compared(const Prediction& prediction, const Recording& recordin
   return Eigen::Map<Eigen::VectorXd>(sums.data(), sums.size());
 }
 
+/// Of the standard normal distribution.
+Eigen::VectorXd drawn(Eigen::Index count, std::mt19937_64& random) {
+  std::normal_distribution<double> normal(0, 1);
+  Eigen::VectorXd numbers(count);
+  for (double& number : numbers) number = normal(random);
+  return numbers;
+}
+
 /// The estimate, as it is improved step by step.
 class Search {
  public:
@@ -239,12 +247,6 @@ class Search {
   /// all else is as is likeliest with it.
   void correct_for_what_is_supposed() {
     std::mt19937_64 random(1);
-    std::normal_distribution<double> normal(0, 1);
-    const auto drawn = [&](Eigen::Index count) {
-      Eigen::VectorXd numbers(count);
-      for (double& number : numbers) number = normal(random);
-      return numbers;
-    };
     const Normal equations = normal_equations(variance_);
     const Prior prior(coarse_.parameters, values_);
     const Eigen::MatrixXd information = equations.information + prior.slopes.transpose() * prior.slopes;
@@ -255,18 +257,18 @@ class Search {
     along(single_, Eigen::all) = Eigen::MatrixXd::Identity(singles, singles);
     if (commons > 0) along(common_, Eigen::all) = -common_solver.solve(information(common_, single_));
     std::vector<Supposed> rolls;
-    for (std::size_t i = 0; i < recordings(); ++i)
-      rolls.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision(), inputs_[i].roll_count());
+    for (std::size_t i = 0; i < recordings(); ++i) rolls.emplace_back(input_information(i, variance_), inputs_[i].roll_count());
 
     Vectors bent;
     for (const Eigen::VectorXd& of_recording : differences_) bent.push_back(Eigen::VectorXd::Zero(of_recording.size()));
     const Slopes most_likely = slopes(values_, errors_, 0, [](auto&&...) { return 1.0; });
     for (int pair = 0; pair < pairs; ++pair) {
       Eigen::VectorXd change = Eigen::VectorXd::Zero(parameters());
-      if (commons > 0) change(common_) = Eigen::VectorXd(common_solver.matrixU().solve(drawn(commons)));
+      if (commons > 0) change(common_) = Eigen::VectorXd(common_solver.matrixU().solve(drawn(commons, random)));
       Vectors samples;
       for (std::size_t i = 0; i < recordings(); ++i)
-        samples.emplace_back(rolls[i].likeliest_with(drawn(inputs_[i].roll_count())) - equations.by_parameters[i] * change);
+        samples.emplace_back(rolls[i].likeliest_with(drawn(inputs_[i].roll_count(), random)) -
+                             equations.by_parameters[i] * change);
       std::array<Slopes, 2> sides;
       for (const int side : {0, 1}) {
         const double sign = side == 0 ? 1 : -1;
@@ -299,17 +301,13 @@ class Search {
   /// more slopes tell in the mean over what is possible of the inputs, by pairs of samples that are opposite.
   void find_noise_of_slopes() {
     std::mt19937_64 random(2);
-    std::normal_distribution<double> normal(0, 1);
     noise_of_slopes_ = Eigen::MatrixXd::Zero(parameters(), parameters());
     std::vector<Eigen::LLT<Eigen::MatrixXd>> solvers;
-    for (std::size_t i = 0; i < recordings(); ++i) solvers.emplace_back(input_squares_[i] / variance_ + inputs_[i].precision());
+    for (std::size_t i = 0; i < recordings(); ++i) solvers.emplace_back(input_information(i, variance_));
     for (int pair = 0; pair < pairs; ++pair) {
       Vectors samples;
-      for (std::size_t i = 0; i < recordings(); ++i) {
-        Eigen::VectorXd numbers(inputs_[i].count());
-        for (double& number : numbers) number = normal(random);
-        samples.emplace_back(solvers[i].matrixU().solve(numbers));
-      }
+      for (std::size_t i = 0; i < recordings(); ++i)
+        samples.emplace_back(solvers[i].matrixU().solve(drawn(inputs_[i].count(), random)));
       std::array<Slopes, 2> sides;
       for (const int side : {0, 1}) {
         Vectors errors;
@@ -320,17 +318,13 @@ class Search {
                                return step_of(single_[k]);
                              });
       }
-      for (std::size_t i = 0; i < recordings(); ++i)
+      for (std::size_t i = 0; i < recordings(); ++i) {
+        const Eigen::MatrixXd noise = 0.5 * (sides[0].matrices[i] - sides[1].matrices[i]);
+        const Eigen::MatrixXd coupling = input_slopes_[i].transpose() * noise / variance_;
         noise_of_slopes_(single_, single_) +=
-            without_inputs(0.5 * (sides[0].matrices[i] - sides[1].matrices[i]), input_slopes_[i], solvers[i]) / pairs;
+            (noise.transpose() * noise / variance_ - coupling.transpose() * solvers[i].solve(coupling)) / pairs;
+      }
     }
-  }
-
-  /// What slopes tell of parameters, the inputs' errors being eliminated.
-  Eigen::MatrixXd without_inputs(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& by_input,
-                                 const Eigen::LLT<Eigen::MatrixXd>& solver) const {
-    const Eigen::MatrixXd coupling = by_input.transpose() * slopes / variance_;
-    return slopes.transpose() * slopes / variance_ - coupling.transpose() * solver.solve(coupling);
   }
 
   /// Errors of segments and of time steps go with the square of their lengths: they cancel from two simulations, one of which has
@@ -351,6 +345,11 @@ class Search {
     });
   }
 
+  /// On a recording's input errors, by its rows and what is known of them without.
+  Eigen::MatrixXd input_information(std::size_t recording, double variance) const {
+    return input_squares_[recording] / variance + inputs_[recording].precision();
+  }
+
   /// Of parameters, with the inputs' errors eliminated, without what is known before.
   struct Normal {
     Eigen::MatrixXd information;
@@ -364,9 +363,8 @@ class Search {
     Normal result{Eigen::MatrixXd::Zero(parameters(), parameters()), Eigen::VectorXd::Zero(parameters()), {}, {}};
     for (std::size_t i = 0; i < recordings(); ++i) {
       const Eigen::MatrixXd &by_input = input_slopes_[i], &slopes = slopes_[i];
-      const Eigen::MatrixXd known = inputs_[i].precision();
-      const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance + known);
-      const Eigen::VectorXd pull = by_input.transpose() * differences_[i] / variance + known * errors_[i];
+      const Eigen::LLT<Eigen::MatrixXd> solver(input_information(i, variance));
+      const Eigen::VectorXd pull = by_input.transpose() * differences_[i] / variance + inputs_[i].precision() * errors_[i];
       const Eigen::MatrixXd coupling = by_input.transpose() * slopes / variance;
       result.by_parameters.emplace_back(solver.solve(coupling));
       result.alone.emplace_back(solver.solve(pull));
@@ -470,12 +468,9 @@ class Search {
     Eigen::MatrixXd information = prior.slopes.transpose() * prior.slopes;
     // The prior is one more thing known, as uncertain as it says.
     Eigen::MatrixXd scatter = information;
+    information += normal_equations(variance_).information;
     const int count = static_cast<int>(recordings());
-    for (std::size_t i = 0; i < recordings(); ++i) {
-      const Eigen::LLT<Eigen::MatrixXd> solver(input_squares_[i] / variance_ + inputs_[i].precision());
-      information += without_inputs(slopes_[i], input_slopes_[i], solver);
-      add_scatter(slopes_[i], differences_[i] / variance_, count, scatter);
-    }
+    for (std::size_t i = 0; i < recordings(); ++i) add_scatter(slopes_[i], differences_[i] / variance_, count, scatter);
     std::vector<Eigen::Index> noisy;
     for (Eigen::Index k = 0; k < parameters(); ++k)
       if (noise_of_slopes_(k, k) > most_noise * information(k, k)) noisy.push_back(k);
