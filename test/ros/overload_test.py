@@ -100,18 +100,22 @@ class OverloadTest(unittest.TestCase):
 
     def test_bursts_and_disorder_of_tf_cost_nothing(self):
         publisher = rospy.Publisher('/tf', TFMessage, queue_size=100)
+        sent = []
         with self.idle.states() as states:
             for burst in range(15):
                 now = rospy.get_time()
                 stamps = [now - 0.2 + 0.01 * i for i in range(20)]
                 for stamp in stamps[::-1] if burst % 2 else stamps:
                     publisher.publish([transform('hand', stamp, hand(stamp))])
+                sent.append(rospy.get_time())
                 rospy.sleep(0.2)
+            # 0.2 s, and what a busy machine adds: so long the node knows of nothing new
+            gap = max(b - a for a, b in zip(sent, sent[1:]))
             followed = [s for s in states.all() if cable(s, 'rope')][10:]
             self.assertGreater(len(followed), 50)
             for state in followed:
                 t = state.header.stamp.to_sec()
-                self.assertLess(distance(cable(state, 'rope').positions[0], hand(t)), 0.03)
+                self.assertLess(distance(cable(state, 'rope').positions[0], hand(t)), SWING * (gap + 0.1))
                 self.assertTrue(all_finite(state))
 
     def test_two_sources_that_disagree_are_reported(self):
