@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   for (const NamedRow& row : rows) names += std::string(names.empty() ? "" : ", ") + row.name;
   for (const std::string& name : wanted)
     if (std::none_of(rows.begin(), rows.end(), [&](const NamedRow& row) { return name == row.name; }))
-      errors.push_back(verlet_cable::quoted(name) + ": no such table; allowed: " + names);
+      errors.push_back(verlet_cable::in_quotes(name) + ": no such table; allowed: " + names);
   if (!errors.empty()) return verlet_cable::tools::refuse("verlet_cable_bench", errors, "nothing was measured");
   Report report;
   for (const NamedRow& row : rows) {

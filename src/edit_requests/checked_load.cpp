@@ -58,20 +58,20 @@ CheckedLoad check_load(const RequestedLoad& request, const Location& place, cons
   const bool ends = !request.name.empty() && request.force.isZero(0) && request.torque.isZero(0);
   if (!ends) checked.errors = place.errors;
   if (!request.name.empty() && !is_name(request.name))
-    checked.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words);
+    checked.errors.push_back("name: " + in_quotes(request.name) + "; allowed: " + name_words);
   check_vector(request.words->force, request.force, applied_load, "N", checked.errors);
   check_vector(request.words->torque, request.torque, applied_load, "N m", checked.errors);
   if (request.point) check_vector("point", *request.point, coordinate, "m", checked.errors);
   if (!load_duration.contains(request.duration))
     checked.errors.push_back("duration: " + number_text(request.duration) + "; allowed: " + load_duration.text("s"));
   if (place.errors.empty() && place.body.is_net())
-    checked.errors.push_back(request.words->on + ": " + quoted(name_of(world, place.body)) +
+    checked.errors.push_back(request.words->on + ": " + in_quotes(name_of(world, place.body)) +
                              "; allowed: cables and bodies, it is a net");
   const bool is_found = place.errors.empty(), is_body = place.body.is_rigid_body();
   const bool is_own = is_found && is_body && request.frame_id == name_of(world, place.body);
   const std::optional<Pose> axes = is_own || request.frame_id.empty() ? Pose{} : find_frame(request.frame_id);
   if (!axes && is_found && !ends)
-    checked.errors.push_back(request.words->axes + ": " + quoted(request.frame_id) +
+    checked.errors.push_back(request.words->axes + ": " + in_quotes(request.frame_id) +
                              "; allowed: empty for the fixed frame, the name of the body that it acts on, or a known frame");
   if (is_found && place.body.is_cable())
     check_node(request, "node " + std::to_string(place.node) + " of " + kind_and_name(world, place.body), checked.errors);
@@ -98,11 +98,11 @@ EditResult apply_load(World& world, const edit::ApplyLoad& load) {
   const EditResult result = world.apply(load);
   if (!result.ok) return result;
   if (load.force.isZero(0) && load.torque.isZero(0))
-    return {true, "load " + quoted(result.name) + (acted ? " has ended" : " does not act"), result.name};
+    return {true, "load " + in_quotes(result.name) + (acted ? " has ended" : " does not act"), result.name};
   const std::string where = load.body.is_cable() ? "node " + std::to_string(load.node) + " of " + kind_and_name(world, load.body)
                                                  : kind_and_name(world, load.body);
   const std::string until = load.duration > 0 ? " for " + number_text(load.duration) + " s" : " until it is changed";
-  return {true, "load " + quoted(result.name) + " acts on " + where + until, result.name};
+  return {true, "load " + in_quotes(result.name) + " acts on " + where + until, result.name};
 }
 
 }  // namespace verlet_cable

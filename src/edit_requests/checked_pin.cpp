@@ -36,8 +36,8 @@ void check_reach(const CheckedPin& pin, const World& world, std::vector<std::str
     const double distance = (place - (world.frame_pose(other.frame) * other.pose).position).norm();
     const double length = std::abs(arc_length[pin.node] - arc_length[other.node]);
     if (distance <= length * (1 + rounding)) continue;
-    errors.push_back("offset.position: " + point_text(pin.offset.position) + " in frame " + verlet_cable::quoted(pin.frame) +
-                     " is " + rounded_text(distance) + " m from " + quoted(other.name) + "; allowed: at most the " +
+    errors.push_back("offset.position: " + point_text(pin.offset.position) + " in frame " + verlet_cable::in_quotes(pin.frame) +
+                     " is " + rounded_text(distance) + " m from " + in_quotes(other.name) + "; allowed: at most the " +
                      rounded_text(length) + " m of cable between them");
   }
 }
@@ -49,7 +49,7 @@ void check_held_body(const RequestedPin& request, const CheckedPin& pin, const W
     if (other.body != pin.body) continue;
     const bool clamped = request.clamp || other.type == AttachmentType::clamp;
     if (!clamped && other.at.position.norm() > same_point) continue;
-    errors.push_back(place_text(request.place) + ": " + kind_and_name(world, pin.body) + " is held by " + quoted(other.name) +
+    errors.push_back(place_text(request.place) + ": " + kind_and_name(world, pin.body) + " is held by " + in_quotes(other.name) +
                      (clamped ? "; allowed: clamps of bodies that nothing else holds, and hinges of those that no clamp holds"
                               : " at its origin already; allowed: bodies that are held elsewhere, or not at all"));
   }
@@ -60,14 +60,14 @@ void check_held_node(const RequestedPin& request, const CheckedPin& pin, const W
       place_text(request.place) + ": node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body);
   const std::vector<Attachment>& attachments = world.attachments();
   if (const int holder = holder_of(pin.body, pin.node, attachments); holder >= 0) {
-    errors.push_back(node + " is held by " + quoted(attachments[holder].name) + "; allowed: nodes that nothing holds");
+    errors.push_back(node + " is held by " + in_quotes(attachments[holder].name) + "; allowed: nodes that nothing holds");
     return;
   }
   if (!pin.body.is_cable()) return;
   const SimulatedCable& cable = world.cables()[pin.body.index];
   if (const NearGuide near = guide_near(pin.body, pin.node, cable, attachments); near.attachment >= 0)
     errors.push_back(node + " is " + rounded_text(near.distance) + " m of cable from guide " +
-                     quoted(attachments[near.attachment].name) + "; allowed: nodes at least " +
+                     in_quotes(attachments[near.attachment].name) + "; allowed: nodes at least " +
                      rounded_bound_text(guide_room * cable.model->segment_length, 1) + " m from it");
 }
 
@@ -106,15 +106,15 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
   pin.frame = request.frame_id.empty() ? world.frames().front() : request.frame_id;
   if (!request.keep_offset) pin.offset = read_pose("offset", request.offset, pin.errors);
   if (!request.name.empty() && !is_name(request.name)) {
-    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: " + name_words + "; or empty");
+    pin.errors.push_back("name: " + in_quotes(request.name) + "; allowed: " + name_words + "; or empty");
   }
   if (find(world.attachments(), request.name) >= 0) {
-    pin.errors.push_back("name: " + quoted(request.name) + "; allowed: names that no attachment has");
+    pin.errors.push_back("name: " + in_quotes(request.name) + "; allowed: names that no attachment has");
   }
   if (const std::optional<Pose> pose = pin.frame[0] == '/' ? std::nullopt : find_frame(pin.frame)) {
     pin.frame_pose = *pose;
   } else {
-    pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) +
+    pin.errors.push_back("frame_id: " + verlet_cable::in_quotes(pin.frame) +
                          "; allowed: known frames, without a leading /; or empty");
   }
   if (!location.errors.empty()) return pin;
@@ -122,7 +122,7 @@ CheckedPin check_pin(const RequestedPin& request, const World& world, const Find
     pin.errors.push_back("clamp" + request.place.words->is_true + "; allowed: false, nets are held by hinges");
   if (pin.body.is_rigid_body()) {
     if (pin.frame == world.bodies()[pin.body.index].name)
-      pin.errors.push_back("frame_id: " + verlet_cable::quoted(pin.frame) + ", the body's own; allowed: others");
+      pin.errors.push_back("frame_id: " + verlet_cable::in_quotes(pin.frame) + ", the body's own; allowed: others");
     check_held_body(request, pin, world, pin.errors);
   } else {
     check_held_node(request, pin, world, pin.errors);

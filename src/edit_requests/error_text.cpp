@@ -25,7 +25,7 @@ std::string point_text(const Vector3& v) {
 
 std::string waits_for_frames(const std::string& field, const std::string& name, const RequestWords& words,
                              const std::string& kind) {
-  return field + ": " + quoted(name) + " waits for its " + words.frames + "; allowed: " + kind + " that are simulated already";
+  return field + ": " + in_quotes(name) + " waits for its " + words.frames + "; allowed: " + kind + " that are simulated already";
 }
 
 std::optional<std::string> why_cable_waits(const World& world, const std::string& field, const std::string& cable,
@@ -41,7 +41,7 @@ std::optional<std::string> why_no_cable(const World& world, const std::string& f
   if (const auto waits = why_cable_waits(world, field, cable, words)) return waits;
   NameList names;
   for (const SimulatedCable& other : world.cables()) names.add(other.model->name);
-  return field + ": " + quoted(cable) + "; allowed: " + names.text("none, there are no cables");
+  return field + ": " + in_quotes(cable) + "; allowed: " + names.text("none, there are no cables");
 }
 
 }  // namespace verlet_cable

@@ -44,7 +44,7 @@ void find_cable(const RequestedPlace& place, const World& world, bool bodies, Po
   if (bodies)
     for (const SimulatedBody& body : world.bodies())
       if (!body.is_junction) names.add(body.name);
-  found.errors.push_back(place.words->cable + ": " + quoted(place.cable) +
+  found.errors.push_back(place.words->cable + ": " + in_quotes(place.cable) +
                          "; allowed: " + names.text("none, there are no cables or nets"));
 }
 
@@ -88,7 +88,7 @@ std::optional<Vector3> read_point(const RequestedPlace& place, const FindFrame& 
   }
   const std::string& frame = place.point_frame;
   const std::optional<Pose> pose = frame.empty() ? Pose{} : find_frame(frame);
-  if (!pose) errors.push_back(place.words->point_frame + ": " + quoted(frame) + "; allowed: known frames");
+  if (!pose) errors.push_back(place.words->point_frame + ": " + in_quotes(frame) + "; allowed: known frames");
   if (errors.size() > before) return std::nullopt;
   return (*pose * Pose{point, Quaternion::Identity()}).position;
 }
@@ -175,7 +175,7 @@ Location locate_net_node(const RequestedPlace& place, const World& world, int in
       found.distance = distance(net, *point);
     }
   } else {
-    found.errors.push_back(mode_text(place) + " for net " + quoted(net.model.name) +
+    found.errors.push_back(mode_text(place) + " for net " + in_quotes(net.model.name) +
                            "; allowed: " + place.words->mode_names[RequestedPlace::at_node] + ", " +
                            place.words->mode_names[RequestedPlace::nearest]);
   }
@@ -198,7 +198,7 @@ Location locate_links(const RequestedPlace& place, const World& world, int index
       if (net.model.links[link][0] == found.node || net.model.links[link][1] == found.node) found.elements.push_back(link);
   }
   if (found.elements.empty())
-    found.errors.push_back(place_text(place) + ": net " + quoted(net.model.name) +
+    found.errors.push_back(place_text(place) + ": net " + in_quotes(net.model.name) +
                            " has no link there; allowed: nodes that links join");
   return found;
 }
@@ -210,7 +210,7 @@ Location locate_body(const RequestedPlace& place, const World& world, int index)
   if (!world.frame_known(world.bodies()[index].frame))
     found.errors.push_back(waits_for_frames(place.words->cable, place.cable, *place.words, "bodies"));
   else if (place.mode != RequestedPlace::at_node)
-    found.errors.push_back(mode_text(place) + " for body " + quoted(place.cable) +
+    found.errors.push_back(mode_text(place) + " for body " + in_quotes(place.cable) +
                            "; allowed: " + place.words->mode_names[RequestedPlace::at_node]);
   else if (place.node != 0)
     found.errors.push_back(place.words->node + ": " + std::to_string(place.node) +
@@ -253,13 +253,13 @@ Location locate_cut(const RequestedPlace& place, const World& world, const FindF
     const int last = cable.state.segments() - 2;
     const bool behind_the_end = place.mode == RequestedPlace::at_node && found.fraction > 0;
     if (last < 1) {
-      found.errors.push_back(place.words->cable + ": " + quoted(cable.model->name) + " of " +
+      found.errors.push_back(place.words->cable + ": " + in_quotes(cable.model->name) + " of " +
                              std::to_string(cable.state.segments()) +
                              " segments; allowed: cables of at least 3, so that each piece keeps one");
     } else if (found.segment < 1 || found.segment > last || behind_the_end) {
       found.errors.push_back(
           found.field + " means " + (behind_the_end ? "no segment" : "segment " + std::to_string(found.segment)) + " of cable " +
-          quoted(cable.model->name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
+          in_quotes(cable.model->name) + "; allowed: segments 1 to " + std::to_string(last) + ", so that each piece keeps one");
     }
   }
   return {cable_id(found.cable), found.segment, {found.segment}, found.distance, found.errors};

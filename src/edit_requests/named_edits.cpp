@@ -22,7 +22,7 @@ EditResult apply_pin(World& world, const std::string& name, const CheckedPin& pi
   world = std::move(trial);
   return {true,
           "node " + std::to_string(pin.node) + " of " + kind_and_name(world, pin.body) + " is pinned to frame " +
-              quoted(pin.frame) + " as " + quoted(result.name),
+              in_quotes(pin.frame) + " as " + in_quotes(result.name),
           result.name};
 }
 
@@ -30,7 +30,7 @@ EditResult apply_unpin(World& world, const std::string& name) {
   if (find(world.attachments(), name) < 0) return refused_attachment(world, name);
   const EditResult result = world.apply(edit::Unpin{name});
   if (!result.ok) return result;
-  return {true, "attachment " + quoted(name) + " is released", {}};
+  return {true, "attachment " + in_quotes(name) + " is released", {}};
 }
 
 EditResult apply_move(World& world, const std::string& name, const Pose& offset) {
@@ -40,7 +40,7 @@ EditResult apply_move(World& world, const std::string& name, const Pose& offset)
   if (!errors.empty()) return refused(errors);
   const EditResult result = world.apply(edit::MoveAttachment{name, pose});
   if (!result.ok) return result;
-  return {true, "attachment " + quoted(name) + " is moved in its frame", {}};
+  return {true, "attachment " + in_quotes(name) + " is moved in its frame", {}};
 }
 
 PlacedEdit apply_cut(World& world, const Location& place) {
@@ -54,7 +54,7 @@ PlacedEdit apply_cut(World& world, const Location& place) {
   result.message = place.body.is_net()
                        ? std::to_string(elements.size()) + (elements.size() == 1 ? " link" : " links") + " of " + what + " cut"
                        : "segment " + std::to_string(place.node) + " of " + what +
-                             " is cut out: the part from there to its end is now cable " + verlet_cable::quoted(result.name);
+                             " is cut out: the part from there to its end is now cable " + verlet_cable::in_quotes(result.name);
   return {result, place.node};
 }
 
@@ -66,7 +66,7 @@ EditResult apply_set_length(World& world, const std::string& cable, bool at_end,
   const EditResult result = world.apply(edit::SetLength{index, at_end, length, speed, max_tension});
   if (!result.ok) return result;
   return {true,
-          "cable " + quoted(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
+          "cable " + in_quotes(cable) + (length < before ? " is taken in from " : " is paid out from ") + rounded_text(before) +
               " m to " + number_text(length) + " m, which takes at least " + rounded_text(std::abs(length - before) / speed, 3) +
               " s" + (max_tension > 0 ? ", with at most " + number_text(max_tension) + " N" : ""),
           {}};
@@ -77,7 +77,8 @@ EditResult apply_set_tension(World& world, const std::string& cable, edit::SetTe
   change.cable = find(world.cables(), cable);
   const EditResult result = world.apply(change);
   if (!result.ok) return result;
-  const std::string winch = std::string("the winch at the ") + (change.at_end ? "end" : "start") + " of cable " + quoted(cable);
+  const std::string winch =
+      std::string("the winch at the ") + (change.at_end ? "end" : "start") + " of cable " + in_quotes(cable);
   return {true,
           change.tension > 0
               ? winch + " keeps " + number_text(change.tension) + " N, at up to " + number_text(change.max_speed) + " m/s"
@@ -103,7 +104,7 @@ void check_kind(const NamedState& state, const char* kind, const std::vector<std
                 std::vector<std::string>& errors) {
   for (const char* given : given_of(state))
     if (std::find(allowed.begin(), allowed.end(), given) == allowed.end())
-      errors.push_back(std::string(given) + ": of the " + kind + " " + quoted(state.name) +
+      errors.push_back(std::string(given) + ": of the " + kind + " " + in_quotes(state.name) +
                        "; allowed: " + NameList(allowed).text());
 }
 
@@ -148,7 +149,7 @@ EditResult apply_set_state(World& world, const std::vector<NamedState>& states, 
     } else if (const auto waits = why_cable_waits(world, "cable", state.name, words)) {
       errors.push_back(*waits);
     } else {
-      strangers.push_back("cable: " + quoted(state.name) +
+      strangers.push_back("cable: " + in_quotes(state.name) +
                           "; allowed: " + settable_names(world).text("none, there are no cables, bodies and guides"));
     }
   }
@@ -166,7 +167,7 @@ PlacedEdit apply_join(World& world, const std::string& first, bool first_at_end,
   const EditResult result =
       world.apply(edit::Join{find(world.cables(), first), first_at_end, find(world.cables(), second), second_at_end});
   if (!result.ok) return {result, node};
-  return {{true, "cable " + quoted(second) + " is joined to " + quoted(first), result.name}, node};
+  return {{true, "cable " + in_quotes(second) + " is joined to " + in_quotes(first), result.name}, node};
 }
 
 EditResult refused_attachment(const World& world, const std::string& name) {
@@ -174,7 +175,8 @@ EditResult refused_attachment(const World& world, const std::string& name) {
   for (const Attachment& attachment : world.attachments())
     if (is_named(attachment)) names.add(attachment.name);
   const std::string waiting = world.findings().waiting.empty() ? "" : "; what still waits for its frames has none yet";
-  return refused({"name: " + quoted(name) + " is no attachment; allowed: " + names.text("none, nothing is attached") + waiting});
+  return refused(
+      {"name: " + in_quotes(name) + " is no attachment; allowed: " + names.text("none, nothing is attached") + waiting});
 }
 
 }  // namespace verlet_cable

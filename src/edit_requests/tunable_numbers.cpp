@@ -118,7 +118,7 @@ SceneDesc tuned_scene(SceneDesc scene, const std::vector<TunableNumber>& numbers
           "in the scene can be tuned");
     } else if (number == numbers.end()) {
       if (++unknown <= most_unknown)
-        errors.push_back("tuning: unknown parameter " + quoted(change.name) + "; allowed: " + names_of(numbers));
+        errors.push_back("tuning: unknown parameter " + in_quotes(change.name) + "; allowed: " + names_of(numbers));
     } else if (!number->range.contains(change.value)) {
       errors.push_back("tuning." + number->name + ": " + number_text(change.value) + "; allowed: " + number->range.text());
     } else {

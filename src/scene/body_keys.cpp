@@ -12,7 +12,7 @@ void read_shape(const Value& value, ShapeDesc& shape) {
   check_dimensions(value, given, shape.type);
 }
 
-const Keys<BodyAttachmentDesc>& attachment_keys() {
+const Keys<BodyAttachmentDesc>& body_attachment_keys() {
   static const Keys<BodyAttachmentDesc> keys{
       text_key("name", &BodyAttachmentDesc::name, name_words, true),
       text_key("frame", &BodyAttachmentDesc::frame, frame_words),
@@ -57,7 +57,7 @@ const Keys<BodyDesc>& body_keys() {
         {"attachments", "a list", false,
          [](const Value& value, BodyDesc& body) {
            body.attachments = read_list<BodyAttachmentDesc>(
-               value, [](const Value& element, BodyAttachmentDesc& a) { read_map(element, attachment_keys(), a); });
+               value, [](const Value& element, BodyAttachmentDesc& a) { read_map(element, body_attachment_keys(), a); });
          }},
     };
     append_fields(body, body_fields);

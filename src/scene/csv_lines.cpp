@@ -3,7 +3,7 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t most_lines = 10'000'001;  // a header and ten million rows
+constexpr std::size_t most_csv_lines = 10'000'001;  // a header and ten million rows
 
 std::string trimmed(const std::string& text) {
   const auto first = text.find_first_not_of(" \t\r");
@@ -14,9 +14,9 @@ std::string trimmed(const std::string& text) {
 
 bool CsvLines::next(std::string& line) {
   while (stream_.getline(buffer_.data(), static_cast<std::streamsize>(buffer_.size()))) {
-    if (++number_ > most_lines) {
+    if (++number_ > most_csv_lines) {
       problem_ = "too many lines";
-      allowed_ = "at most " + std::to_string(most_lines);
+      allowed_ = "at most " + std::to_string(most_csv_lines);
       return false;
     }
     // The end of the line counts, but for a last line that has none.

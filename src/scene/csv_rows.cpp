@@ -40,7 +40,7 @@ void CsvRows::read_header() {
   begun_ = true;
   std::string line;
   if (lines_.next(line)) {
-    if (line != header_) add_error("header " + quoted(line), header_);
+    if (line != header_) add_error("header " + in_quotes(line), header_);
   } else if (lines_.problem().empty()) {
     errors_.push_back("empty; allowed: the header " + header_ + " and rows");
   }

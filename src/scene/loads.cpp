@@ -23,18 +23,18 @@ const Desc* find(const std::vector<Desc>& descs, const std::string& name) {
 std::string problem_of(const LoadRow& row, const SceneDesc& scene) {
   if (row.node < 0) {
     if (find(scene.bodies, row.on) != nullptr) return "";
-    if (find(scene.cables, row.on) != nullptr) return "node -1 of cable " + quoted(row.on) + "; allowed: a node from 0 on";
+    if (find(scene.cables, row.on) != nullptr) return "node -1 of cable " + in_quotes(row.on) + "; allowed: a node from 0 on";
   } else if (const CableDesc* cable = find(scene.cables, row.on)) {
     if (row.node <= cable->segments) return "";
-    return "node " + std::to_string(row.node) + " of cable " + quoted(row.on) + "; allowed: 0 to " +
+    return "node " + std::to_string(row.node) + " of cable " + in_quotes(row.on) + "; allowed: 0 to " +
            std::to_string(cable->segments);
   } else if (find(scene.bodies, row.on) != nullptr) {
-    return "node " + std::to_string(row.node) + " of body " + quoted(row.on) + "; allowed: -1";
+    return "node " + std::to_string(row.node) + " of body " + in_quotes(row.on) + "; allowed: -1";
   }
   NameList names;
   for (const CableDesc& cable : scene.cables) names.add(cable.name);
   for (const BodyDesc& body : scene.bodies) names.add(body.name);
-  return "on " + quoted(row.on) + "; allowed: " + names.text("none, there are no cables and bodies");
+  return "on " + in_quotes(row.on) + "; allowed: " + names.text("none, there are no cables and bodies");
 }
 
 }  // namespace

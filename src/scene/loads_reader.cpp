@@ -31,7 +31,7 @@ class LoadsReader {
   double read_number(const CsvRows::Cells& cells, std::size_t column, const Range& range, const char* unit) {
     const std::optional<double> number = parse_number(cells[column]);
     if (number && range.contains(*number)) return *number;
-    rows_.add_error(std::string(columns[column]) + " " + quoted(cells[column]), range.text(unit));
+    rows_.add_error(std::string(columns[column]) + " " + in_quotes(cells[column]), range.text(unit));
     return 0;
   }
 
@@ -44,7 +44,7 @@ class LoadsReader {
   int read_node(const std::string& cell) {
     const std::optional<double> node = parse_number(cell);
     if (node && *node >= -1 && *node <= largest_integer && *node == std::floor(*node)) return static_cast<int>(*node);
-    rows_.add_error("node " + quoted(cell), "a node's number from 0 on, or -1 for a body");
+    rows_.add_error("node " + in_quotes(cell), "a node's number from 0 on, or -1 for a body");
     return -1;
   }
 
@@ -54,7 +54,7 @@ class LoadsReader {
     row.line = rows_.line();
     row.time = read_number(cells, 0, coordinate, "s");
     row.name = cells[name_column];
-    if (!is_name(row.name)) rows_.add_error("name " + quoted(row.name), name_words);
+    if (!is_name(row.name)) rows_.add_error("name " + in_quotes(row.name), name_words);
     row.on = cells[on_column];
     row.node = read_node(cells[node_column]);
     row.force = read_vector(cells, force_column, "N");
@@ -66,7 +66,7 @@ class LoadsReader {
                              "0, a node takes a force only");
     const auto [last, is_new] = last_times_.emplace(row.name, row.time);
     if (!is_new && row.time <= last->second)
-      return rows_.add_error("t " + cells[0] + " of " + quoted(row.name),
+      return rows_.add_error("t " + cells[0] + " of " + in_quotes(row.name),
                              "times that ascend, the load's last one is " + number_text(last->second));
     last->second = row.time;
     loads_.push_back(std::move(row));

@@ -16,6 +16,7 @@
 
 #include "child_process.h"
 #include "mesh_protocol.h"
+#include "text.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
@@ -26,7 +27,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t longest_message = 200;
 constexpr double least_weld = 1e-6, largest_weld = 1e-3;  // of the mesh's size
 
 /// The program beside this library, in development and install space: lib/libverlet_cable_scene.so, lib/verlet_cable/mesh_reader.

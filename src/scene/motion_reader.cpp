@@ -36,20 +36,20 @@ class MotionReader {
       if (number && coordinate.contains(*number)) {
         numbers[i] = *number;
       } else {
-        rows_.add_error(std::string(columns[i]) + " " + quoted(cells[i]), coordinate.text(i == 0 ? "s" : i < 5 ? "m" : ""));
+        rows_.add_error(std::string(columns[i]) + " " + in_quotes(cells[i]), coordinate.text(i == 0 ? "s" : i < 5 ? "m" : ""));
       }
     }
     const std::string& frame = cells[frame_column];
-    if (!is_frame_name(frame)) rows_.add_error("frame " + quoted(frame), frame_words);
+    if (!is_frame_name(frame)) rows_.add_error("frame " + in_quotes(frame), frame_words);
     if (motion_.size() >= most_frames && motion_.count(frame) == 0)
-      rows_.add_error("frame " + quoted(frame), "at most " + std::to_string(most_frames) + " frames");
+      rows_.add_error("frame " + in_quotes(frame), "at most " + std::to_string(most_frames) + " frames");
     if (rows_.errors() != errors_before) return;
 
     const Quaternion orientation(numbers[8], numbers[5], numbers[6], numbers[7]);
     if (orientation.norm() < least_quaternion) return rows_.add_error("quaternion of length 0", "any other, it is normalized");
     FrameTrack& track = motion_[frame];
     if (!track.empty() && numbers[0] <= track.last_time())
-      return rows_.add_error("t " + cells[0] + " of " + quoted(frame),
+      return rows_.add_error("t " + cells[0] + " of " + in_quotes(frame),
                              "times that ascend, the frame's last one is " + number_text(track.last_time()));
     track.add(numbers[0], {{numbers[2], numbers[3], numbers[4]}, orientation.normalized()});
   }

@@ -1,13 +1,14 @@
 #include "net_keys.h"
 
+#include "shape_keys.h"
+
 namespace verlet_cable {
 namespace {
 
 constexpr const char* color_words = "red, green, blue, alpha: four numbers from 0 to 1";
 constexpr const char* pair_words = "[i, j], two nodes";
 constexpr const char* minimum_words = "[i, j, distance], two nodes and a distance [m]";
-constexpr const char* link_words = "spring | limited | rigid, or a list of [i, j]";
-constexpr const char* pose_words = "six numbers: x, y, z [m], roll, pitch, yaw [rad]";
+constexpr const char* net_link_words = "spring | limited | rigid, or a list of [i, j]";
 
 template <class Owner>
 Key<Owner> color_key(std::array<double, 4> Owner::*member) {
@@ -48,15 +49,14 @@ const Keys<GridDesc>& grid_keys() {
   return keys;
 }
 
-const Keys<NetAttachmentDesc>& attachment_keys() {
+const Keys<NetAttachmentDesc>& net_attachment_keys() {
   static const Keys<NetAttachmentDesc> keys{
       text_key("name", &NetAttachmentDesc::name, name_words, true),
       {"node", "a node of the net", true,
        [](const Value& value, NetAttachmentDesc& a) { a.node = read_integer(value, "a node of the net, an integer from 0"); }},
       text_key("frame", &NetAttachmentDesc::frame, frame_words),
       vector_key("offset", &NetAttachmentDesc::offset, "m"),
-      {"initial_pose", pose_words, false,
-       [](const Value& value, NetAttachmentDesc& a) { a.initial_pose = read_numbers<6>(value, pose_words); }},
+      pose_key("initial_pose", &NetAttachmentDesc::initial_pose),
   };
   return keys;
 }
@@ -83,7 +83,7 @@ MinimumDistanceDesc read_minimum(const Value& value) {
 }
 
 /// The contract has one key for the kind of all links and for the list of them.
-void read_links(const Value& value, NetDesc& net) {
+void read_net_links(const Value& value, NetDesc& net) {
   if (value.node.IsSequence()) {
     net.links =
         read_list<std::array<int, 2>>(value, [](const Value& element, std::array<int, 2>& link) { link = read_pair(element); });
@@ -94,7 +94,7 @@ void read_links(const Value& value, NetDesc& net) {
     net.link_type = type.second;
     return;
   }
-  value.reject(link_words);
+  value.reject(net_link_words);
 }
 
 const Keys<NetDesc>& net_keys() {
@@ -106,7 +106,7 @@ const Keys<NetDesc>& net_keys() {
          [](const Value& value, NetDesc& net) {
            net.nodes = read_list<Vector3>(value, [](const Value& element, Vector3& node) { node = read_vector(element, "m"); });
          }},
-        {"links", link_words, false, read_links},
+        {"links", net_link_words, false, read_net_links},
         choice_key("link_type", &NetDesc::link_type, link_types()),
         {"mass", positive.text("kg"), false,
          [](const Value& value, NetDesc& net) { net.mass = read_number(value, positive.text("kg")); }},
@@ -125,7 +125,7 @@ const Keys<NetDesc>& net_keys() {
         {"attachments", "a list", false,
          [](const Value& value, NetDesc& net) {
            net.attachments = read_list<NetAttachmentDesc>(
-               value, [](const Value& element, NetAttachmentDesc& a) { read_map(element, attachment_keys(), a); });
+               value, [](const Value& element, NetAttachmentDesc& a) { read_map(element, net_attachment_keys(), a); });
          }},
     };
     append_fields(net, net_fields);

@@ -40,7 +40,7 @@ void read_links(const Value& value, RobotDesc& robot) {
     const std::string& link = robot.links[i];
     // What could not be read is empty.
     if (!link.empty() && !seen.insert(link).second)
-      value.errors->add(value.element(i, {}).key, quoted(link) + " given twice", "each link once");
+      value.errors->add(value.element(i, {}).key, in_quotes(link) + " given twice", "each link once");
   }
 }
 

@@ -44,7 +44,7 @@ fs::path file_in_package(const std::string& path) {
   const std::size_t slash = std::min(path.find('/'), path.size());
   const std::string package = path.substr(0, slash);
   const std::optional<std::string> directory = find_package(package);
-  if (!directory) throw ResourceError("package " + quoted(package) + " is not found in ROS_PACKAGE_PATH");
+  if (!directory) throw ResourceError("package " + in_quotes(package) + " is not found in ROS_PACKAGE_PATH");
   // By what the path says, not by where its links lead: a package in a workspace may be made of links.
   const fs::path inside = fs::path(path.substr(slash)).relative_path().lexically_normal();
   if (!inside.empty() && *inside.begin() == "..") throw ResourceError("it is outside of the package");
@@ -71,7 +71,7 @@ std::string file_of(const std::string& uri, const FileAccess& access) {
   std::error_code error;
   const fs::path directory = access.directory.empty() ? fs::path() : fs::canonical(access.directory, error);
   if (directory.empty() || error || !is_inside(found, directory))
-    throw ResourceError("it is outside of scene_directory " + quoted(access.directory));
+    throw ResourceError("it is outside of scene_directory " + in_quotes(access.directory));
   return found.string();
 }
 

@@ -7,6 +7,7 @@
 #include <cstdlib>
 #include <set>
 
+#include "text.h"
 #include "verlet_cable/core/quoted_text.h"
 #include "verlet_cable/core/scene_fields.h"
 #include "verlet_cable/scene/resource.h"
@@ -15,7 +16,6 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t longest_message = 300;
 constexpr std::size_t largest_text = std::size_t{4} << 20;  // [byte]
 constexpr std::size_t deepest_level = 64;
 constexpr std::size_t most_links = 1000;
@@ -137,7 +137,7 @@ class TreeBuilder {
       const std::string name = original(link.first);
       if (name.empty()) throw ResourceError("no URDF: a link with the name \"\"");
       if (name.size() > most_name_characters)
-        throw ResourceError("no URDF: link " + quoted(name) + ", a name of " + std::to_string(name.size()) +
+        throw ResourceError("no URDF: link " + in_quotes(name) + ", a name of " + std::to_string(name.size()) +
                             " characters, more than " + std::to_string(most_name_characters));
       taken_.insert(name);
       if (is_selected(name)) collisions += geometry_of(*link.second).size();

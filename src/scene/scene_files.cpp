@@ -54,7 +54,7 @@ void read_mesh(const std::string& key, MeshReader& reader, ErrorList& errors, Sh
   try {
     shape.mesh = reader.read(shape);
   } catch (const ResourceError& error) {
-    errors.add_unread(key + ".uri", quoted(shape.uri) + ": " + error.what(), mesh_words);
+    errors.add_unread(key + ".uri", in_quotes(shape.uri) + ": " + error.what(), mesh_words);
   }
 }
 
@@ -66,12 +66,12 @@ std::optional<std::string> problem_of(ObstacleDesc& obstacle, MeshReader& reader
   if (is_round && obstacle.radius == 0) return "a radius of 0";
   if (obstacle.type == ShapeType::cylinder && obstacle.length == 0) return "a cylinder of length 0";
   if (obstacle.type != ShapeType::mesh) return std::nullopt;
-  if (obstacle.scale.cwiseAbs().minCoeff() == 0) return quoted(obstacle.uri) + ": a scale of 0";
+  if (obstacle.scale.cwiseAbs().minCoeff() == 0) return in_quotes(obstacle.uri) + ": a scale of 0";
   if (!is_scaled(obstacle)) return std::nullopt;
   try {
     obstacle.mesh = reader.read(obstacle);
   } catch (const ResourceError& error) {
-    return quoted(obstacle.uri) + ": " + error.what();
+    return in_quotes(obstacle.uri) + ": " + error.what();
   }
   return std::nullopt;
 }
@@ -102,10 +102,11 @@ Description read_description(const RobotDesc& robot, const SceneSources& sources
     try {
       return {key, read_file(file_of(file, sources.files)), file};
     } catch (const ResourceError& error) {
-      errors.add_unread(key, quoted(file) + ": " + error.what(), urdf_words);
+      errors.add_unread(key, in_quotes(file) + ": " + error.what(), urdf_words);
     }
   } else if (sources.parameter) {
-    errors.add_unread("robot.description", quoted(robot.description) + " is not set, or is no text", "a parameter with a URDF");
+    errors.add_unread("robot.description", in_quotes(robot.description) + " is not set, or is no text",
+                      "a parameter with a URDF");
   } else {
     errors.add_unread("robot.file", "missing", "a file with a URDF: there are no parameters here");
   }
@@ -129,7 +130,7 @@ void check_links(const Value& root, const RobotDesc& robot) {
   for (std::size_t i = 0; i < robot.links.size(); ++i) {
     if (known.count(robot.links[i]) > 0) continue;
     const Value key = root.child("robot", {}).child("links", {}).element(i, {});
-    if (!root.errors->is_unread(key.key)) root.errors->add(key.key, quoted(robot.links[i]), allowed);
+    if (!root.errors->is_unread(key.key)) root.errors->add(key.key, in_quotes(robot.links[i]), allowed);
   }
 }
 
@@ -140,7 +141,7 @@ void read_robot(const Value& root, const SceneSources& sources, MeshReader& mesh
     robot.tree = read_urdf(description.text, robot);
   } catch (const ResourceError& error) {
     const std::string& name = description.key == "robot.file" ? robot.file : robot.description;
-    return root.errors->add_unread(description.key, quoted(name) + ": " + error.what(), urdf_words);
+    return root.errors->add_unread(description.key, in_quotes(name) + ": " + error.what(), urdf_words);
   }
   check_links(root, robot);
   for (LinkDesc& link : robot.tree) {

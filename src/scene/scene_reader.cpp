@@ -106,7 +106,7 @@ void add_presets(const Value& root, SceneDesc& scene) {
     if (preset != presets.end()) {
       scene.materials.push_back(*preset);
     } else {
-      root.errors->add_unread(key, quoted(name),
+      root.errors->add_unread(key, in_quotes(name),
                               "a material of the scene (" + own + "), or one that is shipped (" + material_names(presets) + ")");
     }
   };
@@ -137,7 +137,7 @@ ColorBy natural_colors(const YAML::Node& cables) {
 void check_origin_frame(const std::string& frame, const SceneDesc& scene, ErrorList& errors) {
   if (frame.empty() || scene.origin.isZero(0)) return;
   for (const std::string& key : keys_of_frame(scene, frame))
-    errors.add(key, quoted(frame), "other names: with `origin`, the frame of this name is that of the markers and clouds");
+    errors.add(key, in_quotes(frame), "other names: with `origin`, the frame of this name is that of the markers and clouds");
 }
 
 SceneDesc read_all(const YAML::Node& root, const std::vector<std::string>& ignored, const SceneSources& sources) {

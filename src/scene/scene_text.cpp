@@ -12,6 +12,7 @@
 #include "guarded_text.h"
 #include "named_file.h"
 #include "scene_size.h"
+#include "text.h"
 #include "value.h"
 #include "verlet_cable/scene/scene_reader.h"
 #include "within_memory.h"
@@ -21,7 +22,6 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::size_t longest_message = 300;
 constexpr std::string_view document_start = "--- ";
 
 /// A text as yaml-cpp is given it. It takes a scene in brackets (JSON) for what may be a key, and keeps all its tokens up to the
@@ -56,7 +56,8 @@ void check_encoding(const std::string& text) {
   const std::size_t end = wide ? text.size() : length_of_text(text);
   if (end == text.size()) return;
   const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(end), '\n');
-  const std::string byte = text[end] == '\0' ? "a NUL byte" : "the byte " + quoted(text.substr(end, 1)) + ", which is not UTF-8";
+  const std::string byte =
+      text[end] == '\0' ? "a NUL byte" : "the byte " + in_quotes(text.substr(end, 1)) + ", which is not UTF-8";
   throw SceneError(
       {"line " + std::to_string(line) + ": " + byte + "; allowed: text in UTF-8, or in UTF-16 or UTF-32 with a byte order mark"});
 }
@@ -169,7 +170,7 @@ std::string scene_file_text(const std::string& path) {
     text.append(block.data(), static_cast<std::size_t>(file.gcount()));
   }
   if (!file.is_open() || file.bad())
-    throw SceneError({"scene: cannot read " + quoted(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
+    throw SceneError({"scene: cannot read " + in_quotes(path) + ": " + std::generic_category().message(errno ? errno : EIO)});
   return text;
 }
 

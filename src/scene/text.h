@@ -8,6 +8,8 @@
 
 namespace verlet_cable {
 
+constexpr std::size_t longest_message = 300;  ///< of another library, in one of ours
+
 /// The number that a text is: decimal, with or without exponent, or [+-][.]inf[inity] in any case. None for NaN, hexadecimal and
 /// numbers that a double cannot hold. Does not depend on the locale.
 std::optional<double> parse_number(const std::string& text);

@@ -45,7 +45,7 @@ void Value::reject(const std::string& allowed) const {
 std::string value_text(const YAML::Node& node) {
   if (node.IsDefined() && node.IsScalar()) {
     const std::string& text = node.Scalar();
-    return parse_number(text) ? escaped(text) : quoted(text);
+    return parse_number(text) ? escaped(text) : in_quotes(text);
   }
   std::string text;
   append_flow(node, 4, text);

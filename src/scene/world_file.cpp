@@ -53,7 +53,7 @@ void require_structure(const SceneDesc& scene, ByteReader& bytes) {
 WorldFile read_parts(const SceneDesc& scene, ByteReader& bytes) {
   const std::string version = bytes.read_text();
   if (version != VERLET_CABLE_VERSION)
-    refuse("version " + quoted(version) + " of the package has saved it, and this is " + VERLET_CABLE_VERSION);
+    refuse("version " + in_quotes(version) + " of the package has saved it, and this is " + VERLET_CABLE_VERSION);
   require_structure(scene, bytes);
   SceneDesc at_first = scene;
   set_numbers(bytes.read_text(), at_first);

@@ -60,7 +60,7 @@ std::string missing_space(const Line& line) {
   const std::size_t end = end_of_word(line.text, at);
   if (end == at || end + 1 >= line.text.size() || line.text[end] != ':') return "";
   const bool is_spaced = std::string(blanks).find(line.text[end + 1]) != std::string::npos;
-  return is_spaced ? "" : line.name() + ": a space is missing after " + quoted(line.text.substr(at, end + 1 - at));
+  return is_spaced ? "" : line.name() + ": a space is missing after " + in_quotes(line.text.substr(at, end + 1 - at));
 }
 
 /// What is wrong in a map or list of which `lines` are the last two, the later first.
@@ -79,7 +79,7 @@ std::string structure_hint(const std::vector<Line>& lines) {
   if (lines.size() < 2) return "";
   const Line& before = lines.back();
   if (before.text.find(':') == std::string::npos && first_key(before.text) == before.indentation())
-    return before.name() + ": a colon is missing after " + quoted(before.text.substr(before.indentation()));
+    return before.name() + ": a colon is missing after " + in_quotes(before.text.substr(before.indentation()));
   if (at != first_key(before.text))
     return line.name() + " is indented by " + std::to_string(at) + ", " + before.name() + " by " +
            std::to_string(first_key(before.text)) + "; the keys of a map begin in the same column";

@@ -17,16 +17,16 @@ WorldEvent event_of(const World& world, const Break& broken) {
   const std::string& second = world.cables()[broken.new_cable].model->name;
   return {EventType::broke,
           {first, {}, broken.segment, second},
-          "cable " + quoted(first) + " broke at segment " + std::to_string(broken.segment) +
+          "cable " + in_quotes(first) + " broke at segment " + std::to_string(broken.segment) +
               ", where its tension was above breaking_tension, " + number_text(broken.limit) +
-              " N; the part behind it is now cable " + quoted(second)};
+              " N; the part behind it is now cable " + in_quotes(second)};
 }
 
 WorldEvent event_of(const World& world, const Excursion& excursion) {
   const std::string& cable = world.cables()[excursion.cable].model->name;
   return {EventType::limit,
           {cable, {}, excursion.node, excursion.other},
-          "cable " + quoted(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion)};
+          "cable " + in_quotes(cable) + " at node " + std::to_string(excursion.node) + ": " + excursion_text(excursion)};
 }
 
 WorldEvent event_of(const World& world, int index, EventType type) {
@@ -36,7 +36,7 @@ WorldEvent event_of(const World& world, int index, EventType type) {
   const bool caught = type == EventType::caught;
   return {type,
           {guide.cable, guide.name, attachment == world.attachments().end() ? 0 : attachment->node, {}},
-          "guide " + quoted(guide.name) + (caught ? " has taken cable " : " has let cable ") + quoted(guide.cable) +
+          "guide " + in_quotes(guide.name) + (caught ? " has taken cable " : " has let cable ") + in_quotes(guide.cable) +
               (caught ? "" : " go")};
 }
 

@@ -10,7 +10,7 @@ namespace {
 TEST(QuotedText, KeepsCharactersOfUtf8Whole) {
   for (const std::string text : {"", "hose 2", "\u00e9", "\u20ac", "\ud7ff", "\ue000", "\U00010000", "\U0010ffff"}) {
     EXPECT_EQ(escaped(text), text);
-    EXPECT_EQ(quoted(text), '"' + text + '"');
+    EXPECT_EQ(in_quotes(text), '"' + text + '"');
   }
   EXPECT_EQ(escaped("a\u20acb", 2), "a\u20ac...");
   EXPECT_EQ(escaped("a\u20acb", 1), "a...");

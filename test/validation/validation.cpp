@@ -23,7 +23,7 @@ void append(const std::string& file, const std::string& rows) {
 }
 
 /// For CSV: names have commas.
-std::string quoted(const std::string& name) {
+std::string in_quotes(const std::string& name) {
   return '"' + name + '"';
 }
 
@@ -56,7 +56,7 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
   std::string rows;
   for (const Sample& s : samples) {
     line += " " + short_text(s.error) + " (n = " + short_text(s.n) + ")";
-    rows += quoted(name) + "," + short_text(s.n) + "," + short_text(s.error) + "," + short_text(tolerance) + "\n";
+    rows += in_quotes(name) + "," + short_text(s.n) + "," + short_text(s.error) + "," + short_text(tolerance) + "\n";
   }
   const Sample& last = samples.back();
   if (samples.size() > 1) {
@@ -79,7 +79,7 @@ void report(const std::string& name, const std::vector<Sample>& samples, double 
 void record_curve(const std::string& name, const std::string& label, const std::vector<double>& x, const std::vector<double>& y) {
   std::string rows;
   for (std::size_t i = 0; i < x.size(); ++i)
-    rows += quoted(name) + "," + label + "," + std::to_string(x[i]) + "," + std::to_string(y[i]) + "\n";
+    rows += in_quotes(name) + "," + label + "," + std::to_string(x[i]) + "," + std::to_string(y[i]) + "\n";
   append("curves.csv", rows);
 }
 

@@ -28,7 +28,7 @@ inline std::string name_of(const World& world, const BodyId& body) {
 /// The kind and the name for messages, such as: cable "hose".
 inline std::string kind_and_name(const World& world, const BodyId& body) {
   const char* kind = body.is_cable() ? "cable" : body.is_net() ? "net" : body.is_rigid_body() ? "body" : "particle";
-  return std::string(kind) + " " + quoted(name_of(world, body));
+  return std::string(kind) + " " + in_quotes(name_of(world, body));
 }
 
 }  // namespace verlet_cable

@@ -9,7 +9,7 @@ namespace verlet_cable {
 
 /// What became of a load.
 inline std::string ended_load_text(const EndedLoad& load) {
-  return "load " + quoted(load.name) + " on " + quoted(load.on) +
+  return "load " + in_quotes(load.name) + " on " + in_quotes(load.on) +
          (load.ran_out ? " has ended: its time has run out" : " has ended: a winch has taken its node in");
 }
 

@@ -14,7 +14,7 @@ inline std::string excursion_text(const Excursion& excursion) {
     return "bends to a radius of " + rounded_text(excursion.value) + " m, below minimum_bend_radius, " +
            number_text(excursion.allowed) + " m";
   if (excursion.kind == Excursion::Kind::squeeze)
-    return "is squeezed by " + quoted(excursion.other) + " with " + rounded_text(excursion.value) +
+    return "is squeezed by " + in_quotes(excursion.other) + " with " + rounded_text(excursion.value) +
            " N/m, above maximum_squeeze, " + number_text(excursion.allowed) + " N/m";
   return "is pulled with " + rounded_text(excursion.value) + " N, above maximum_tension, " + number_text(excursion.allowed) +
          " N";

@@ -52,7 +52,7 @@ inline std::string escaped(const std::string& text, std::size_t longest = 60) {
 }
 
 /// The same in quotes.
-inline std::string quoted(const std::string& text) {
+inline std::string in_quotes(const std::string& text) {
   return '"' + escaped(text) + '"';
 }
 

@@ -99,7 +99,7 @@ EditResult World::Implementation::apply(const edit::SetObstacle& set) {
   std::string problem = problem_of(obstacle, state.frames.names.size());
   if (const char* other = kind_with_name(obstacle.name, state); problem.empty() && other != nullptr)
     problem = std::string("name: that of a ") + other + "; allowed: names that no cable, net, particle or body has";
-  if (!problem.empty()) return refused("obstacle " + quoted(obstacle.name) + ": " + problem);
+  if (!problem.empty()) return refused("obstacle " + in_quotes(obstacle.name) + ": " + problem);
   obstacle.pose.orientation.normalize();
   obstacle.present = state.frames.known[obstacle.frame];
   const std::string name = obstacle.name;
@@ -117,7 +117,7 @@ EditResult World::Implementation::apply(const edit::SetObstacle& set) {
 EditResult World::Implementation::apply(const edit::RemoveObstacle& remove) {
   const std::string& name = remove.name;
   const auto found = find_obstacle(state.obstacles, name);
-  if (found == state.obstacles.end()) return refused("obstacle: " + quoted(name) + "; there is no such obstacle");
+  if (found == state.obstacles.end()) return refused("obstacle: " + in_quotes(name) + "; there is no such obstacle");
   const int index = static_cast<int>(found - state.obstacles.begin());
   for (CableProgress& progress : state.cable_progress) forget_obstacle(found->id, progress.contacts);
   for (BodyProgress& progress : state.body_progress) forget_obstacle(found->id, progress.contacts);

@@ -82,10 +82,11 @@ std::vector<std::string> too_many_coupled_places(const SceneDesc& scene) {
   for (std::size_t i = 0; i < scene.cables.size(); ++i) {
     const int places = counter.most(i);
     if (places <= most_coupled_places) continue;
-    errors.add(indexed("cables", i),
-               std::to_string(places) + " guides, bodies and junctions on " + quoted(scene.cables[i].name) + " feel each other",
-               "at most " + std::to_string(most_coupled_places) +
-                   "; on a cable without guides, clamps and rigid junctions divide it into parts that are counted apart");
+    errors.add(
+        indexed("cables", i),
+        std::to_string(places) + " guides, bodies and junctions on " + in_quotes(scene.cables[i].name) + " feel each other",
+        "at most " + std::to_string(most_coupled_places) +
+            "; on a cable without guides, clamps and rigid junctions divide it into parts that are counted apart");
   }
   return errors.take();
 }

@@ -68,13 +68,13 @@ inline bool has_sound_size(const CableDesc& cable) {
 class UniqueNames {
  public:
   void check(const std::string& key, const std::string& name, Errors& errors) {
-    if (!is_name(name)) return errors.add(key, quoted(name), name_words);
+    if (!is_name(name)) return errors.add(key, in_quotes(name), name_words);
     claim(key, name, errors);
   }
   /// Of any letters.
   void claim(const std::string& key, const std::string& name, Errors& errors) {
     const auto [first, is_new] = first_use_.emplace(name, key);
-    if (!is_new) errors.add(key, quoted(name), "a name that is used once; it is " + first->second + " already");
+    if (!is_new) errors.add(key, in_quotes(name), "a name that is used once; it is " + first->second + " already");
   }
 
  private:

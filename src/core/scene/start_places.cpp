@@ -270,8 +270,8 @@ class Harness {
   }
 
   std::string words(const Hold& hold) const {
-    if (hold.junction >= 0) return "junction " + quoted(scene_.junctions[hold.junction].name);
-    return quoted(hold.name) + (hold.body >= 0 ? " on body " + quoted(scene_.bodies[hold.body].name) : "");
+    if (hold.junction >= 0) return "junction " + in_quotes(scene_.junctions[hold.junction].name);
+    return in_quotes(hold.name) + (hold.body >= 0 ? " on body " + in_quotes(scene_.bodies[hold.body].name) : "");
   }
 
   void check(std::vector<std::string>& errors) const {
@@ -283,7 +283,7 @@ class Harness {
       if (!is_looked_for || distance <= reach.allowed) continue;
       const CableDesc& cable = scene_.cables[reach.cable];
       lines.add(indexed("cables", reach.cable) + ".length",
-                rounded_text(reach.length) + " m of cable " + quoted(cable.name) + " between " + words(reach.first) + " and " +
+                rounded_text(reach.length) + " m of cable " + in_quotes(cable.name) + " between " + words(reach.first) + " and " +
                     words(reach.last),
                 "at least the distance of these where what has no pose hangs so that the least is missing, " +
                     rounded_text(distance) + " m: there is no place that all cables reach");

@@ -29,8 +29,8 @@ void check_types(const std::string& prefix, const BodyDesc& body, Errors& errors
   for (auto other = attachments.begin(); other != attachments.end(); ++other) {
     if (other == first || (!has_clamp && !holds_axes(other->type))) continue;
     errors.add(indexed(prefix + "attachments", other - attachments.begin()) + ".type", name_of(other->type),
-               has_clamp ? "nothing besides " + quoted(first->name) + ", a clamp, which holds the whole body"
-                         : "a hinge on the axis of " + quoted(first->name) + ", an axle");
+               has_clamp ? "nothing besides " + in_quotes(first->name) + ", a clamp, which holds the whole body"
+                         : "a hinge on the axis of " + in_quotes(first->name) + ", an axle");
   }
 }
 
@@ -44,7 +44,7 @@ void check_attachments(const std::string& prefix, std::size_t index, const BodyD
     check_numbers(key + ".at", attachment.at, coordinate, "m, rad", errors);
     const auto holder = scene_names.bodies.find(attachment.body);
     if (!attachment.body.empty() && holder != scene_names.bodies.end() && holder->second == index)
-      errors.add(key + ".body", quoted(attachment.body), "another body, or a frame");
+      errors.add(key + ".body", in_quotes(attachment.body), "another body, or a frame");
   }
   check_types(prefix, body, errors);
 }
@@ -145,7 +145,7 @@ void check_broadcast(const SceneDesc& scene, const SceneNames& scene_names, Erro
   if (!scene.broadcast_tf) return;
   const auto check = [&](const std::string& key, const std::string& frame) {
     if (!frame.empty() && scene_names.bodies.count(frame))
-      errors.add(key, quoted(frame), "a frame that is not named like a body, or broadcast_tf: false; `body` names bodies");
+      errors.add(key, in_quotes(frame), "a frame that is not named like a body, or broadcast_tf: false; `body` names bodies");
   };
   check("frame_id", scene.frame_id);
   visit_frame_users(scene, [&](const std::string& key, const auto& user) { check(key + ".frame", user.frame); });

@@ -75,7 +75,7 @@ class GuideChecker {
                     "start, end, or an arc length [m]; only a clip may be without, which is open at first");
       const auto cable = names_.cables.find(guide.cable);
       if (cable == names_.cables.end()) {
-        errors_.add(key + ".cable", quoted(guide.cable), one_of("cable", names_.cables));
+        errors_.add(key + ".cable", in_quotes(guide.cable), one_of("cable", names_.cables));
       } else if (guide.place) {
         check_on_cable(key, guide, scene_.cables[cable->second]);
       }
@@ -103,7 +103,7 @@ class GuideChecker {
     if (is_first) return;
     if (arc_length <= last->second.arc_length)
       errors_.add(key + ".at", number_text(arc_length),
-                  "more than the " + number_text(last->second.arc_length) + " m of " + quoted(last->second.name) +
+                  "more than the " + number_text(last->second.arc_length) + " m of " + in_quotes(last->second.name) +
                       ": the guides of a cable are listed in the order of `at`");
     last->second = {guide.name, arc_length};
   }
@@ -115,12 +115,13 @@ class GuideChecker {
       if (std::abs(arc_length - held) <= same_place * cable.length)
         errors_.add(key + ".at", number_text(arc_length), "a place where nothing holds the cable; " + holder + " does");
     };
-    for (const AttachmentDesc& attachment : cable.attachments) check(attachment.place, "attachment " + quoted(attachment.name));
+    for (const AttachmentDesc& attachment : cable.attachments)
+      check(attachment.place, "attachment " + in_quotes(attachment.name));
     for (const JunctionDesc& junction : scene_.junctions) {
-      if (junction.cable == cable.name) check(junction.place, "junction " + quoted(junction.name));
+      if (junction.cable == cable.name) check(junction.place, "junction " + in_quotes(junction.name));
       for (const BranchDesc& branch : junction.branches) {
         const auto at = branch.end == BranchDesc::End::start ? PlaceDesc::At::start : PlaceDesc::At::end;
-        if (branch.cable == cable.name) check({at, 0}, "junction " + quoted(junction.name));
+        if (branch.cable == cable.name) check({at, 0}, "junction " + in_quotes(junction.name));
       }
     }
   }
@@ -159,7 +160,7 @@ class GuideChecker {
     if (is_sheave) check_winding(key, guide, cable, shape, *pose);
     const double segment = cable.length / cable.segments;
     if (distance <= segment || !std::isfinite(distance)) return;
-    errors_.add(key, "the initial shape of " + quoted(cable.name) + " misses it by " + rounded_text(distance) + " m",
+    errors_.add(key, "the initial shape of " + in_quotes(cable.name) + " misses it by " + rounded_text(distance) + " m",
                 "a shape in numbers that passes within a segment's length, " + rounded_bound_text(segment, -1) + " m");
   }
 
@@ -177,8 +178,8 @@ class GuideChecker {
     }
     if (std::abs(turned) < 2 * M_PI) return;
     errors_.add(key,
-                "the initial shape of " + quoted(cable.name) + " winds around it " + rounded_text(std::abs(turned) / (2 * M_PI)) +
-                    " times",
+                "the initial shape of " + in_quotes(cable.name) + " winds around it " +
+                    rounded_text(std::abs(turned) / (2 * M_PI)) + " times",
                 "less than one turn, for now");
   }
 
@@ -222,13 +223,13 @@ class SimulationChecker {
     const auto body =
         std::find_if(scene_.bodies.begin(), scene_.bodies.end(), [&](const BodyDesc& b) { return b.name == guide.body; });
     if (guide.place && !has_pose(*body))
-      errors_.add(key + ".body", quoted(guide.body), "a body with a `pose` or attachments, for now");
+      errors_.add(key + ".body", in_quotes(guide.body), "a body with a `pose` or attachments, for now");
     if (guide.inertia > 0)
       errors_.add(key + ".inertia", number_text(guide.inertia), "0 on a body; wheels with inertia need a frame, for now");
   }
 
   void check_sections(const std::string& key, bool is_sheave, const CableDesc& cable) {
-    if (is_sheave) errors_.add(key + ".cable", quoted(cable.name), "a cable without sections, for now");
+    if (is_sheave) errors_.add(key + ".cable", in_quotes(cable.name), "a cable without sections, for now");
     double lightest = infinity, heaviest = 0;
     const auto weigh = [&](const std::string& name) {
       const double density = scene_.find_material(name)->linear_density;
@@ -239,7 +240,7 @@ class SimulationChecker {
     for (const SectionDesc& section : cable.sections) weigh(section.material);
     if (heaviest > most_uneven * lightest)
       errors_.add(
-          key + ".cable", quoted(cable.name),
+          key + ".cable", in_quotes(cable.name),
           "a cable whose sections' linear densities differ by a factor of at most " + number_text(most_uneven) + ", for now");
   }
 
@@ -260,8 +261,8 @@ class SimulationChecker {
     for (const GuideDesc& other : scene_.guides)
       if (&other < &guide && other.cable == guide.cable && other.type == GuideDesc::Type::sheave)
         errors_.add(
-            key + ".cable", quoted(cable.name),
-            "a cable that no other sheave holds, as " + quoted(other.name) +
+            key + ".cable", in_quotes(cable.name),
+            "a cable that no other sheave holds, as " + in_quotes(other.name) +
                 " does; for now, several are only for cables with one bending_stiffness that are straight at rest, do not yield "
                 "and are not clamped to bodies");
   }
@@ -282,10 +283,10 @@ class SimulationChecker {
     check_end(0, "the cable's start");
     check_end(cable.length, "the cable's end");
     for (const AttachmentDesc& attachment : cable.attachments)
-      check_holder(cable.length * node_at(cable, attachment.place) / cable.segments, "attachment " + quoted(attachment.name));
+      check_holder(cable.length * node_at(cable, attachment.place) / cable.segments, "attachment " + in_quotes(attachment.name));
     for (const GuideDesc& other : scene_.guides)
       if (&other < &guide && other.cable == guide.cable && other.place)
-        check_holder(arc_length_of(cable, *other.place), "guide " + quoted(other.name));
+        check_holder(arc_length_of(cable, *other.place), "guide " + in_quotes(other.name));
   }
 
   const SceneDesc& scene_;

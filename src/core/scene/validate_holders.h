@@ -33,13 +33,13 @@ struct SceneNames {
 /// What something is held by, and where: a frame or a body.
 template <class Desc>
 void check_holder(const std::string& key, const SceneNames& names, const Desc& desc, Errors& errors) {
-  if (!desc.frame.empty() && !is_frame_name(desc.frame)) errors.add(key + ".frame", quoted(desc.frame), frame_words);
+  if (!desc.frame.empty() && !is_frame_name(desc.frame)) errors.add(key + ".frame", in_quotes(desc.frame), frame_words);
   if (!desc.body.empty() && !names.bodies.count(desc.body))
-    errors.add(key + ".body", quoted(desc.body), one_of("body", names.bodies));
+    errors.add(key + ".body", in_quotes(desc.body), one_of("body", names.bodies));
   if (!desc.body.empty() && !desc.frame.empty())
-    errors.add(key + ".body", quoted(desc.body) + ", given together with frame " + quoted(desc.frame), "one of the two");
+    errors.add(key + ".body", in_quotes(desc.body) + ", given together with frame " + in_quotes(desc.frame), "one of the two");
   if (!desc.body.empty() && desc.initial_pose)
-    errors.add(key + ".initial_pose", "given together with body " + quoted(desc.body),
+    errors.add(key + ".initial_pose", "given together with body " + in_quotes(desc.body),
                "only with frame; a body has its own pose");
   check_vector(key + ".offset", desc.offset, "m", errors);
   check_vector(key + ".rotation", desc.rotation, "rad", errors);

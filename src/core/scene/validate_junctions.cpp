@@ -41,7 +41,7 @@ class JunctionChecker {
   const CableDesc* find_cable(const std::string& key, const std::string& name) {
     const auto found = names_.cables.find(name);
     if (found != names_.cables.end()) return &scene_.cables[found->second];
-    errors_.add(key + ".cable", quoted(name), one_of("cable", names_.cables));
+    errors_.add(key + ".cable", in_quotes(name), one_of("cable", names_.cables));
     return nullptr;
   }
 
@@ -54,7 +54,7 @@ class JunctionChecker {
     const int node = node_at(*cable, junction.place);
     const auto [first, is_new] = trunks_.emplace(node_of(*cable, node), key);
     if (!is_new)
-      errors_.add(key + ".at", "node " + std::to_string(node) + " of " + quoted(cable->name),
+      errors_.add(key + ".at", "node " + std::to_string(node) + " of " + in_quotes(cable->name),
                   "a node that has no other junction; " + first->second + " is there");
   }
 
@@ -63,7 +63,7 @@ class JunctionChecker {
     const CableDesc* cable = find_cable(key, branch.cable);
     if (!cable || !has_sound_size(*cable)) return;
     const int node = branch.end == BranchDesc::End::start ? 0 : cable->segments;
-    const std::string place = std::string(name_of(branch.end)) + " of " + quoted(cable->name);
+    const std::string place = std::string(name_of(branch.end)) + " of " + in_quotes(cable->name);
     if (branch.cable == junction.cable && is_sound(*cable, junction.place)) {
       const int segments = std::abs(node_at(*cable, junction.place) - node);
       if (segments == 0)
@@ -80,7 +80,7 @@ class JunctionChecker {
       errors_.add(key + ".end", place, "an end without a junction of its own; " + trunk->second + " is there");
     for (const AttachmentDesc& attachment : cable->attachments)
       if (is_sound(*cable, attachment.place) && node_at(*cable, attachment.place) == node)
-        errors_.add(key + ".end", place, "an end that nothing else holds; attachment " + quoted(attachment.name) + " does");
+        errors_.add(key + ".end", place, "an end that nothing else holds; attachment " + in_quotes(attachment.name) + " does");
   }
 
   const SceneDesc& scene_;

@@ -90,7 +90,7 @@ void check_attachments(const std::string& prefix, const NetDesc& net, UniqueName
     const std::string key = indexed(prefix + "attachments", i);
     names.check(key + ".name", attachment.name, errors);
     if (!attachment.frame.empty() && !is_frame_name(attachment.frame))
-      errors.add(key + ".frame", quoted(attachment.frame), frame_words);
+      errors.add(key + ".frame", in_quotes(attachment.frame), frame_words);
     check_vector(key + ".offset", attachment.offset, "m", errors);
     if (attachment.initial_pose) check_numbers(key + ".initial_pose", *attachment.initial_pose, coordinate, "m, rad", errors);
     if (net.node_count() == 0) continue;

@@ -16,7 +16,7 @@ void check_vector_is_positive(const std::string& key, const Vector3& v, const ch
 void check_obstacle(const std::string& key, const ObstacleDesc& obstacle, Errors& errors) {
   const std::string prefix = key + ".";
   if (!obstacle.frame.empty() && !is_frame_name(obstacle.frame))
-    errors.add(prefix + "frame", quoted(obstacle.frame), frame_words);
+    errors.add(prefix + "frame", in_quotes(obstacle.frame), frame_words);
   check_numbers(prefix + "pose", obstacle.pose, coordinate, "m, rad", errors);
   if (obstacle.initial_pose) check_numbers(prefix + "initial_pose", *obstacle.initial_pose, coordinate, "m, rad", errors);
   check_shape(prefix, obstacle, errors);
@@ -38,7 +38,7 @@ void check_shape(const std::string& prefix, const ShapeDesc& shape, Errors& erro
   const auto is_scale = [](double factor) { return positive.contains(std::abs(factor)); };
   if (!std::all_of(shape.scale.begin(), shape.scale.end(), is_scale))
     errors.add(prefix + "scale", list_text(shape.scale), scale_words);
-  if (!shape.mesh) errors.add(prefix + "uri", quoted(shape.uri), "a mesh file that could be read");
+  if (!shape.mesh) errors.add(prefix + "uri", in_quotes(shape.uri), "a mesh file that could be read");
 }
 
 void check_obstacles(const SceneDesc& scene, UniqueNames names, Errors& errors) {

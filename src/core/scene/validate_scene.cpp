@@ -140,7 +140,7 @@ void check_sections(const std::string& list, const SceneDesc& scene, const Cable
     const std::size_t found = errors.size();
     check_fields(key + ".", section_fields, section, errors);
     if (!scene.find_material(section.material))
-      errors.add(key + ".material", quoted(section.material),
+      errors.add(key + ".material", in_quotes(section.material),
                  "a material of the scene (" + material_names(scene.materials) + ")");
     if (errors.size() == found && has_sound_size(cable)) check_section(key, list, cable, i, errors);
   }
@@ -152,7 +152,8 @@ void check_cable(const std::string& key, const SceneDesc& scene, const CableDesc
   check_fields(prefix, cable_fields, cable, errors);
   check_fields(prefix, cable_integer_fields, cable, errors);
   if (!scene.find_material(cable.material))
-    errors.add(prefix + "material", quoted(cable.material), "a material of the scene (" + material_names(scene.materials) + ")");
+    errors.add(prefix + "material", in_quotes(cable.material),
+               "a material of the scene (" + material_names(scene.materials) + ")");
   check_sections(prefix + "sections", scene, cable, errors);
   for (const NamedMaterial& named : materials_of(scene, cable)) check_damping(key, scene, cable, named, errors);
   check_torsional_stiffness(key, scene, cable, errors);
@@ -181,8 +182,8 @@ void check_initial_poses(const SceneDesc& scene, Errors& errors) {
     const auto [first, is_new] = first_use.emplace(frame, FirstUse{*desc.initial_pose, key});
     if (!is_new && first->second.pose != *desc.initial_pose)
       errors.add(key, list_text(*desc.initial_pose),
-                 "the same initial_pose wherever a frame is named; " + quoted(frame) + " has " + list_text(first->second.pose) +
-                     " by " + first->second.key);
+                 "the same initial_pose wherever a frame is named; " + in_quotes(frame) + " has " +
+                     list_text(first->second.pose) + " by " + first->second.key);
   });
 }
 
@@ -236,13 +237,13 @@ void check_held_segment(const std::string& key, const SceneDesc& scene, const Ca
   if (on_bodies && free > 0 && distance > length * (free + 1) * (1 + distance_tolerance))
     return errors.add(
         key + ".length",
-        rounded_text(length * segments) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+        rounded_text(length * segments) + " m of cable between " + in_quotes(first.name) + " and " + in_quotes(second.name),
         "at least " + rounded_bound_text(distance + held, 1) +
             " m, as clamps hold the segments next to them of a cable without bending_stiffness, and it is "
             "inextensible (axial_stiffness .inf)");
   if (free > 0 || std::abs(distance - length) <= held_tolerance * length) return;
   errors.add(key + ".segments",
-             std::to_string(cable.segments) + ", no node between " + quoted(first.name) + " and " + quoted(second.name) +
+             std::to_string(cable.segments) + ", no node between " + in_quotes(first.name) + " and " + in_quotes(second.name) +
                  " is free, and a segment of " + rounded_text(length) + " m would be " + rounded_text(distance) + " m long",
              "so many that a node between them is free, as the cable is inextensible (axial_stiffness .inf)");
 }
@@ -266,7 +267,7 @@ void check_distances(const std::string& key, const SceneDesc& scene, const Cable
         (held_point(second, *holder_of(scene, second, frames)) - held_point(first, *holder_of(scene, first, frames))).norm();
     if (length > 0 && distance > length * (1 + distance_tolerance)) {
       errors.add(key + ".length",
-                 rounded_text(length) + " m of cable between " + quoted(first.name) + " and " + quoted(second.name),
+                 rounded_text(length) + " m of cable between " + in_quotes(first.name) + " and " + in_quotes(second.name),
                  "at least the distance of these attachments, " + rounded_bound_text(distance, 1) +
                      " m, as the cable is inextensible (axial_stiffness .inf)");
       continue;
@@ -347,7 +348,7 @@ std::vector<std::string> validate_distances(const SceneDesc& scene, const Bounda
 
 std::vector<std::string> validate(const SceneDesc& scene) {
   Errors errors;
-  if (!is_frame_name(scene.frame_id)) errors.add("frame_id", quoted(scene.frame_id), frame_words);
+  if (!is_frame_name(scene.frame_id)) errors.add("frame_id", in_quotes(scene.frame_id), frame_words);
   check_fields("", scene_fields, scene, errors);
   check_fields("", scene_integer_fields, scene, errors);
   check_fields("limits.", limits_fields, scene.limits, errors);

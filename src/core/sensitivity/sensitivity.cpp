@@ -82,7 +82,7 @@ class ParameterReader {
     for (const Kind kind : {Kind::translation, Kind::rotation})
       for (int axis = 0; axis < 3; ++axis) columns.push_back({kind, -1, frame, axis});
   }
-  void refuse(const std::string& allowed) { errors.push_back("parameters: " + quoted(name_) + "; allowed: " + allowed); }
+  void refuse(const std::string& allowed) { errors.push_back("parameters: " + in_quotes(name_) + "; allowed: " + allowed); }
   void refuse_start() { refuse("of a start that is settled: a given state does not go together with another length or pose"); }
 
   const State& state_;
@@ -151,7 +151,7 @@ Sensitivity::Sensitivity(const World& world, const std::vector<std::string>& par
       if (start == Start::settled) problem = own.cables.back().settle(state);
     }
     if (!problem.empty())
-      reader.errors.push_back("cable " + quoted(state.cables[cable].model->name) + " has no derivatives: " + problem);
+      reader.errors.push_back("cable " + in_quotes(state.cables[cable].model->name) + " has no derivatives: " + problem);
   }
   if (!reader.errors.empty()) throw std::invalid_argument(text_of(reader.errors));
 }

@@ -160,7 +160,7 @@ view::Drawing Appearance::drawing_of(const World& world) const {
     if (is_there) continue;
     NameList names;
     for (const view::Thing& thing : drawing.things) names.add(thing.name);
-    throw py::value_error("looks: " + quoted(name) + "; allowed: the names of what is there: " + names.text("nothing"));
+    throw py::value_error("looks: " + in_quotes(name) + "; allowed: the names of what is there: " + names.text("nothing"));
   }
   return drawing;
 }

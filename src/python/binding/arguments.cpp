@@ -106,7 +106,7 @@ std::vector<Quantity> read_quantities(const char* argument, const std::vector<py
     std::size_t i = 0;
     while (i < quantity_names.size() && name != quantity_names[i]) ++i;
     if (i == quantity_names.size())
-      throw py::value_error(std::string(argument) + ": " + quoted(name) + "; allowed: " + NameList(quantity_names).text());
+      throw py::value_error(std::string(argument) + ": " + in_quotes(name) + "; allowed: " + NameList(quantity_names).text());
     quantities.push_back(static_cast<Quantity>(i));
   }
   return quantities;

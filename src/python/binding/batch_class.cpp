@@ -193,14 +193,14 @@ py::array_t<double> observe(PythonBatch& batch, const std::vector<GivenPart>& pa
   return observations(batch.batch, parts, missing);
 }
 
-std::unique_ptr<PythonWorld> world_at(const PythonBatch& batch, std::int64_t index) {
+std::unique_ptr<PythonWorld> copied_world_at(const PythonBatch& batch, std::int64_t index) {
   const Batch& worlds = use(batch);
   std::unique_ptr<PythonWorld> world = own_world(batch.scene, worlds[read_world_index(index, worlds.size())]);
   world->driven().world().step_one_by_one(false);
   return world;
 }
 
-std::shared_ptr<PythonBatch> copy(const PythonBatch& batch) {
+std::shared_ptr<PythonBatch> copied_batch(const PythonBatch& batch) {
   return std::make_shared<PythonBatch>(batch.scene, batch.threads, use(batch));
 }
 
@@ -324,13 +324,13 @@ BatchClass add_batch_class(py::module_& module) {
           "recorded each time that many steps are done. Other threads run meanwhile; Ctrl-C ends it between two steps, without "
           "records. Raises ValueError as World.step, for the first world that lacks the pose of a frame.")
       .def("settle", settle, "As World.settle; (count,) bool.")
-      .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
-      .def("__copy__", copy)
+      .def("copy", copied_batch, "An independent copy, which continues from here with the same bytes.")
+      .def("__copy__", copied_batch)
       .def(
-          "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copy(batch); }, py::arg("memo"))
+          "__deepcopy__", [](const PythonBatch& batch, const py::dict&) { return copied_batch(batch); }, py::arg("memo"))
       .def(py::pickle(&pickled, &unpickled))
       .def("__reduce_ex__", reduce, py::arg("protocol"))
-      .def("world", world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
+      .def("world", copied_world_at, py::arg("index"), "A copy of one of the worlds, without its earlier events.")
       .def("positions", read<Quantity::positions>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),
            "(count, n + 1, 3) or (count, records, n + 1, 3) [m].")
       .def("velocities", read<Quantity::velocities>, py::arg("name"), py::kw_only(), py::arg("missing") = py::none(),

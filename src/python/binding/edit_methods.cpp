@@ -40,7 +40,7 @@ RequestedPlace read_place(const py::str& cable, std::optional<std::int64_t> node
     throw py::value_error("node, arc_length, point: " + std::to_string(given) + " of them given; allowed: exactly one");
   const std::string frame = text_of(point_frame, "point_frame");
   if (!point && !frame.empty())
-    throw py::value_error("point_frame: " + quoted(frame) + " without a point; allowed: together with one");
+    throw py::value_error("point_frame: " + in_quotes(frame) + " without a point; allowed: together with one");
   RequestedPlace place;
   place.words = &python_words();
   place.cable = text_of(cable, "cable");
@@ -109,12 +109,12 @@ std::vector<NamedState> read_states(const py::dict& states) {
     if (!py::isinstance<py::str>(name)) throw py::type_error("states: " + ascii_text(name) + "; allowed: names");
     NamedState& state = all.emplace_back();
     state.name = text_of(name, "states");
-    const std::string path = "states[" + quoted(state.name) + "]";
+    const std::string path = "states[" + in_quotes(state.name) + "]";
     if (!py::isinstance<py::dict>(keys))
       throw py::type_error(path + ": " + ascii_text(keys) + "; allowed: a dict, such as {'pose': (7,)}");
     for (const auto& [key, value] : keys.cast<py::dict>()) {
       const std::string field = py::isinstance<py::str>(key) ? text_of(key, path) : ascii_text(key);
-      read_key(field, path + "[" + quoted(field) + "]", value, state);
+      read_key(field, path + "[" + in_quotes(field) + "]", value, state);
     }
   }
   return all;
@@ -134,7 +134,7 @@ void add_material_number(const NamedMaterial& material, const std::string& key, 
   const bool bends = key == bending_stiffness_field.key;
   const bool pair = bends && numbers.ndim() == 1 && numbers.shape(0) == 2;
   if (numbers.ndim() != 0 && !pair)
-    throw py::value_error("materials[" + quoted(material.name) + "][" + quoted(key) + "]: shape " + shape_text(numbers) +
+    throw py::value_error("materials[" + in_quotes(material.name) + "][" + in_quotes(key) + "]: shape " + shape_text(numbers) +
                           "; allowed: a number" + (bends ? ", or (2,)" : ""));
   if (!pair && (!bends || material.material.bending_stiffness.is_isotropic())) {
     changes.push_back({name, *numbers.data()});
@@ -150,7 +150,7 @@ void add_materials(const SceneDesc& scene, const std::map<std::string, std::map<
     const auto is_it = [&name = name](const NamedMaterial& material) { return material.name == name; };
     const auto material = std::find_if(scene.materials.begin(), scene.materials.end(), is_it);
     if (material == scene.materials.end())
-      throw UnknownName("materials: " + quoted(name) + "; allowed: " + material_names(scene.materials));
+      throw UnknownName("materials: " + in_quotes(name) + "; allowed: " + material_names(scene.materials));
     for (const auto& [key, numbers] : keys) add_material_number(*material, key, numbers, changes);
   }
 }

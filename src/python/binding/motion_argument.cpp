@@ -45,14 +45,14 @@ Motion read_tracks(const py::dict& tracks, const SceneDesc& scene) {
   Motion motion;
   for (const auto& [key, value] : tracks) {
     const std::string frame = text_of(py::str(key), "motion");
-    motion[frame] = read_track("motion[" + quoted(frame) + "]", value);
+    motion[frame] = read_track("motion[" + in_quotes(frame) + "]", value);
   }
   const std::vector<std::string> unused = unused_frames(scene, motion);
   if (unused.empty()) return motion;
   NameList allowed;
   const std::vector<std::string> names = frame_names(scene);
   for (std::size_t i = 1; i < names.size(); ++i) allowed.add(names[i]);
-  throw py::key_error("motion: " + quoted(unused.front()) + "; allowed: " + allowed.text("none, the scene has no frames"));
+  throw py::key_error("motion: " + in_quotes(unused.front()) + "; allowed: " + allowed.text("none, the scene has no frames"));
 }
 
 /// What `read` makes of a file; errors name it.
@@ -75,7 +75,7 @@ Motion read_motion(const py::object& given, const SceneDesc& scene) {
   const Motion motion = tracks ? read_tracks(given, scene) : read_file("motion", path_of(given, "motion"), read_motion_file);
   std::vector<std::string> errors;
   if (motion.count(scene.frame_id) > 0)
-    errors.push_back("motion: frame " + quoted(scene.frame_id) + " moves; allowed: any but the fixed frame");
+    errors.push_back("motion: frame " + in_quotes(scene.frame_id) + " moves; allowed: any but the fixed frame");
   if (!errors.empty()) throw SceneError(errors);
   return motion;
 }

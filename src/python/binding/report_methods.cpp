@@ -38,11 +38,11 @@ double arc_length_at(const World& world, const std::string& guide) {
     if (world.guides()[i].name == guide) {
       const GuideView view = world.view_guide(static_cast<int>(i));
       if (view.cable >= 0) return view.arc_length;
-      throw py::value_error("guide: " + quoted(guide) + " has no cable in it; allowed: guides that have one");
+      throw py::value_error("guide: " + in_quotes(guide) + " has no cable in it; allowed: guides that have one");
     }
     names.add(world.guides()[i].name);
   }
-  throw UnknownName("guide: " + quoted(guide) + "; allowed: " + names.text("none, there are no guides"));
+  throw UnknownName("guide: " + in_quotes(guide) + "; allowed: " + names.text("none, there are no guides"));
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ Output find_output(const World& world, const std::string& text) {
   output.key = text.substr(0, colon);
   const std::string name = colon == std::string::npos ? "" : text.substr(colon + 1);
   const auto refuse = [&](const std::string& allowed) {
-    throw std::invalid_argument("outputs: " + quoted(text) + "; allowed: " + allowed);
+    throw std::invalid_argument("outputs: " + in_quotes(text) + "; allowed: " + allowed);
   };
   const bool is_wrench = output.key == "wrench";
   if (colon == std::string::npos ||
@@ -88,7 +88,7 @@ Output find_output(const World& world, const std::string& text) {
 
 void read(const World& world, const Sensitivity& sensitivity, Output& output) {
   if (const std::string lost = sensitivity.lost(world, output.cable); !lost.empty())
-    throw py::value_error("outputs: " + quoted(output.text) + " has no derivatives any longer, " + lost +
+    throw py::value_error("outputs: " + in_quotes(output.text) + " has no derivatives any longer, " + lost +
                           "; allowed: cables of which derivatives are followed, as anew after another track_sensitivity()");
   std::size_t size = static_cast<std::size_t>(sensitivity.columns());
   for (const py::ssize_t length : output.shape) size *= static_cast<std::size_t>(length);
@@ -124,7 +124,7 @@ std::vector<std::size_t> chosen_columns(const Sensitivity& sensitivity, const st
       first += columns;
     }
     if (!is_found)
-      throw py::value_error("parameters: " + quoted(parameter) + "; allowed: those that are followed, " +
+      throw py::value_error("parameters: " + in_quotes(parameter) + "; allowed: those that are followed, " +
                             NameList(sensitivity.parameters()).text());
   }
   return chosen;
@@ -149,7 +149,7 @@ void track(PythonWorld& self, const py::object& parameters, const py::str& start
     return;
   }
   const std::string from = text_of(start, "start");
-  if (from != "settled" && from != "given") throw py::value_error("start: " + quoted(from) + "; allowed: 'settled', 'given'");
+  if (from != "settled" && from != "given") throw py::value_error("start: " + in_quotes(from) + "; allowed: 'settled', 'given'");
   self.driven().require_placed_frames();
   *tracked = Sensitivity(self.world(), texts_of(parameters, "parameters", Sensitivity::parameter_words),
                          from == "settled" ? Sensitivity::Start::settled : Sensitivity::Start::given);

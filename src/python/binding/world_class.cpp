@@ -56,7 +56,7 @@ std::unique_ptr<PythonWorld> make(const PythonScene& scene, const py::object& mo
   return world;
 }
 
-std::unique_ptr<PythonWorld> copy(PythonWorld& world) {
+std::unique_ptr<PythonWorld> copied_world(PythonWorld& world) {
   world.world();
   std::unique_ptr<PythonWorld> copied = own_world(world.scene(), world.driven(), world.events());
   copied->driven().world().step_one_by_one(false);
@@ -229,10 +229,10 @@ py::class_<PythonWorld> add_world_class(py::module_& module) {
       .def_property_readonly(
           "scene", [](PythonWorld& world) { return world.scene(); },
           "The scene that the world was made of, without what tune() has changed.")
-      .def("copy", copy, "An independent copy, which continues from here with the same bytes.")
-      .def("__copy__", copy)
+      .def("copy", copied_world, "An independent copy, which continues from here with the same bytes.")
+      .def("__copy__", copied_world)
       .def(
-          "__deepcopy__", [](PythonWorld& world, const py::dict&) { return copy(world); }, py::arg("memo"))
+          "__deepcopy__", [](PythonWorld& world, const py::dict&) { return copied_world(world); }, py::arg("memo"))
       .def("positions", read<Quantity::positions>, py::arg("name"),
            "(n + 1, 3) [m] of the nodes of a cable; likewise of a net or a particle.")
       .def("velocities", read<Quantity::velocities>, py::arg("name"),

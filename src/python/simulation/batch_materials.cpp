@@ -61,7 +61,7 @@ std::string meant(const std::string& field) {
 
 void check_names(const std::string& material, const std::vector<MaterialChange>& changes, const SceneDesc& scene) {
   if (!scene.find_material(material))
-    throw UnknownName("name: " + quoted(material) + "; allowed: " + material_names(scene.materials));
+    throw UnknownName("name: " + in_quotes(material) + "; allowed: " + material_names(scene.materials));
   for (const MaterialChange& wanted : changes)
     if (!is_material_field(wanted.field))
       throw UnknownName("materials." + material + "." + escaped(wanted.field) + ": no such key; allowed: " + material_keys() +

@@ -159,7 +159,7 @@ int DrivenWorld::index_of_frame(const std::string& name) const {
 int DrivenWorld::find_frame(const std::string& name) const {
   if (const int frame = index_of_frame(name); frame >= 0) return frame;
   const NameList allowed(frame_names());
-  throw UnknownName("name: " + quoted(name) + "; allowed: " + allowed.text("none, the scene has none that moves"));
+  throw UnknownName("name: " + in_quotes(name) + "; allowed: " + allowed.text("none, the scene has none that moves"));
 }
 
 std::vector<std::string> DrivenWorld::frame_names() const {
@@ -180,9 +180,9 @@ std::optional<Pose> DrivenWorld::frame_pose(const std::string& name) const {
 
 void DrivenWorld::add_frame(const std::string& name, const Pose& pose) {
   const std::vector<std::string>& names = world_.frames();
-  if (!is_frame_name(name)) throw std::invalid_argument("name: " + quoted(name) + "; allowed: " + frame_words);
+  if (!is_frame_name(name)) throw std::invalid_argument("name: " + in_quotes(name) + "; allowed: " + frame_words);
   if (std::find(names.begin(), names.end(), name) != names.end())
-    throw std::invalid_argument("name: " + quoted(name) + "; allowed: names that no frame has");
+    throw std::invalid_argument("name: " + in_quotes(name) + "; allowed: names that no frame has");
   const std::size_t frame = names.size();
   world_.add_frame(name, pose);
   follow_frames_from(frame);

@@ -154,7 +154,7 @@ edit::ApplyLoad checked_wrench(const std::string& body, bool turns, RequestedLoa
     NameList names;
     for (const SimulatedBody& other : world.bodies())
       if (!other.is_junction) names.add(other.name);
-    place.errors.push_back("body: " + quoted(body) + "; allowed: " + names.text("none, there are no bodies"));
+    place.errors.push_back("body: " + in_quotes(body) + "; allowed: " + names.text("none, there are no bodies"));
   }
   if (turns) request.frame_id = body;
   return checked(std::move(request), place, world);
@@ -181,7 +181,7 @@ void remove_obstacle(const std::string& name, DrivenWorld& world) {
     if (other.name == name) return require(world.world().apply(edit::RemoveObstacle{name}));
     names.add(other.name);
   }
-  throw UnknownName("name: " + quoted(name) + "; allowed: " + names.text("none, there is none"));
+  throw UnknownName("name: " + in_quotes(name) + "; allowed: " + names.text("none, there is none"));
 }
 
 void tune(const std::vector<NumberChange>& changes, DrivenWorld& world) {

@@ -30,7 +30,7 @@ class Names {
     for (const SimulatedNet& net : world.nets()) add(net.model.name);
   }
   [[noreturn]] void refuse(const char* what, const std::string& name) const {
-    throw UnknownName(std::string(what) + ": " + quoted(name) + "; allowed: " + list_.text("none, there is none"));
+    throw UnknownName(std::string(what) + ": " + in_quotes(name) + "; allowed: " + list_.text("none, there is none"));
   }
 
  private:

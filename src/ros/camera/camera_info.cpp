@@ -22,7 +22,7 @@ std::vector<std::string> problems_of(const sensor_msgs::CameraInfo& info) {
   };
   const bool is_plumb_bob = info.distortion_model == sensor_msgs::distortion_models::PLUMB_BOB;
   require(!is_distorted(info) || is_plumb_bob,
-          "distortion_model: " + quoted(info.distortion_model) + "; allowed: plumb_bob, or D without distortion");
+          "distortion_model: " + in_quotes(info.distortion_model) + "; allowed: plumb_bob, or D without distortion");
   require(!is_distorted(info) || !is_plumb_bob || info.D.size() == 5,
           "D: " + std::to_string(info.D.size()) + " numbers; allowed: 5 for plumb_bob");
   const auto binning = std::max(info.binning_x, info.binning_y);

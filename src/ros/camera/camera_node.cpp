@@ -13,11 +13,10 @@
 #include "camera/stage_maker.h"
 #include "camera/tf_frames.h"
 #include "threads/guarded_queue.h"
+#include "time/log_period.h"
 
 namespace verlet_cable {
 namespace {
-
-constexpr double log_period = 5;  // [s] between errors about what may last
 
 ros::NodeHandle guarded(ros::NodeHandle node, GuardedQueue& guard) {
   node.setCallbackQueue(&guard);

@@ -104,7 +104,7 @@ void apply_preset(const Value& root, CameraSettings& settings) {
 
 void check_topic(const Value& root, const char* key, const std::string& topic) {
   std::string problem;
-  if (!ros::names::validate(topic, problem)) root.errors->add(key, verlet_cable::quoted(topic), topic_words);
+  if (!ros::names::validate(topic, problem)) root.errors->add(key, verlet_cable::in_quotes(topic), topic_words);
 }
 
 void check_range(const Value& root, const char* key, const char* unit, double number, const Range& range) {
@@ -116,7 +116,7 @@ void check(const Value& root, const CameraSettings& settings) {
   if (settings.state.empty()) root.errors->add("state", "\"\"", topic_words);
   check_topic(root, "camera_info_topic", settings.camera_info_topic);
   if (!is_frame_name(settings.optical_frame))
-    root.errors->add("optical_frame", verlet_cable::quoted(settings.optical_frame), frame_words);
+    root.errors->add("optical_frame", verlet_cable::in_quotes(settings.optical_frame), frame_words);
   check_range(root, "rate", "Hz", settings.rate, rates);
   check_range(root, "tf_timeout", "s", settings.tf_timeout, timeouts);
   if (settings.seed < 0) root.errors->add("seed", std::to_string(settings.seed), "an integer from 0");
@@ -131,7 +131,7 @@ void read_robot(const Value& root, const std::optional<std::string>& text, Camer
   if (text) {
     settings.robot = *text;
   } else if (settings.robot_description != CameraSettings{}.robot_description && !settings.robot_description.empty()) {
-    root.errors->add("robot_description", verlet_cable::quoted(settings.robot_description) + " is not set, or is no text",
+    root.errors->add("robot_description", verlet_cable::in_quotes(settings.robot_description) + " is not set, or is no text",
                      "a parameter with a URDF");
   }
 }

@@ -3,12 +3,12 @@
 #include <algorithm>
 
 #include "camera/camera_info.h"
+#include "time/log_period.h"
 
 namespace verlet_cable {
 namespace {
 
-constexpr std::uint32_t queue_size = 5;
-const ros::WallDuration reminder_period(10.0);  // between warnings of the same
+constexpr std::uint32_t info_queue_size = 5;
 
 bool are_equal(const view::CameraModel& a, const view::CameraModel& b) {
   return a.width == b.width && a.height == b.height && a.fx == b.fx && a.fy == b.fy && a.cx == b.cx && a.cy == b.cy &&
@@ -21,9 +21,9 @@ Intrinsics::Intrinsics(ros::NodeHandle& node, const CameraSettings& settings, co
     : frame_(settings.optical_frame), near_(settings.camera.near), far_(settings.camera.far), topic_(settings.camera_info_topic) {
   for (const char* name : {"camera_info", "depth/camera_info", "rgb/camera_info", "mask/camera_info"})
     if (topic_ != node.resolveName(name))
-      publishers_.push_back(node.advertise<sensor_msgs::CameraInfo>(name, queue_size, changed, changed));
+      publishers_.push_back(node.advertise<sensor_msgs::CameraInfo>(name, info_queue_size, changed, changed));
   if (!topic_.empty()) {
-    subscriber_ = node.subscribe(topic_, queue_size, &Intrinsics::receive, this);
+    subscriber_ = node.subscribe(topic_, info_queue_size, &Intrinsics::receive, this);
     return;
   }
   const view::CameraModel model = view::camera_model(settings.camera);

@@ -21,7 +21,7 @@ std::shared_ptr<const TriangleMesh> MeshShelf::read(const std::string& uri, cons
   try {
     mesh = read_mesh_file(file_of(uri, {}), scale);
   } catch (const ResourceError& error) {
-    ROS_WARN("not seen: the mesh %s: %s; allowed: %s", quoted(uri).c_str(), error.what(), mesh_words);
+    ROS_WARN("not seen: the mesh %s: %s; allowed: %s", in_quotes(uri).c_str(), error.what(), mesh_words);
   }
   return mesh;
 }

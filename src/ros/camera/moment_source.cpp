@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "threads/guarded_queue.h"
+#include "time/log_period.h"
 
 namespace verlet_cable {
 namespace {
@@ -13,10 +14,8 @@ constexpr std::uint32_t state_queue_size = 1;  // a camera that cannot keep up s
 constexpr std::uint32_t appearance_queue_size = 100;
 constexpr std::size_t most_waiting = 100;     // a second of states, as many as a cable node has in its queue
 const ros::WallDuration retry_period(0.002);  // tf has no call for what comes
-constexpr double log_period = 5;              // [s] between warnings about what may last
 const ros::WallDuration first_warning(5.0);   // a cable node may have been started together with the camera, and may need so long
-const ros::WallDuration reminder_period(10.0);  // between warnings that there are no states
-constexpr double rounding = 1e-6;               // of a period: stamps are on its edges
+constexpr double rounding = 1e-6;             // of a period: stamps are on its edges
 
 std::string beside(const std::string& topic, const std::string& name) {
   return ros::names::append(ros::names::parentNamespace(topic), name);

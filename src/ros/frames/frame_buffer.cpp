@@ -175,7 +175,7 @@ void FrameBuffer::refuse(const std::string& child, const std::string& problem) {
   const ros::WallTime now = ros::WallTime::now();
   for (auto it = logged_.begin(); it != logged_.end();) it = now - it->second > log_period ? logged_.erase(it) : std::next(it);
   if (logged_.size() >= most_refused || !logged_.emplace(child, now).second) return;
-  ROS_WARN("tf of frame %s refused: %s", quoted(child).c_str(), problem.c_str());
+  ROS_WARN("tf of frame %s refused: %s", in_quotes(child).c_str(), problem.c_str());
 }
 
 /// Whether tf2 may have the name.
@@ -194,12 +194,12 @@ void FrameBuffer::note_kind(const std::string& child, bool is_static) {
     ROS_WARN(
         "frame %s came on /tf and now comes on /tf_static, which ROS cannot change while a node runs: it counts as lost; start "
         "the node again",
-        quoted(child).c_str());
+        in_quotes(child).c_str());
   } else {
     ROS_WARN(
         "frame %s came on /tf_static and now comes on /tf, which ROS cannot change while a node runs: it is followed with jerks; "
         "start the node again",
-        quoted(child).c_str());
+        in_quotes(child).c_str());
   }
 }
 

@@ -87,7 +87,7 @@ void FrameWatch::watch(const SceneDesc& scene) {
 bool FrameWatch::react(const std::vector<FrameChange>& changes, Nanoseconds stamp, World& world) {
   bool wait = false;
   for (const FrameChange& change : changes) {
-    const std::string name = quoted(world.frames()[change.frame]);
+    const std::string name = in_quotes(world.frames()[change.frame]);
     const bool needed = !attachments_of(change.frame, world).empty();
     switch (change.kind) {
       case FrameChange::Kind::seen:
@@ -132,7 +132,7 @@ void FrameWatch::warn_of_ignored(const World& world, const BoundaryInputs& input
     if (now - last < ignored_period) continue;
     last = now;
     ROS_WARN("frame %s is at (%g, %g, %g): it is not followed there, and what it holds stays where it was; allowed: %s",
-             quoted(world.frames()[i]).c_str(), position.x(), position.y(), position.z(), coordinate.text("m").c_str());
+             in_quotes(world.frames()[i]).c_str(), position.x(), position.y(), position.z(), coordinate.text("m").c_str());
   }
 }
 
@@ -140,14 +140,14 @@ void FrameWatch::report_lost(int frame, Nanoseconds stamp, const World& world) {
   lost_.insert(frame);
   publish_for_frame(
       events_, CableEvent::FRAME_LOST, frame, stamp, world,
-      "frame " + quoted(world.frames()[frame]) + " is lost: nothing new on tf for longer than tf_timeout, " +
+      "frame " + in_quotes(world.frames()[frame]) + " is lost: nothing new on tf for longer than tf_timeout, " +
           number_text(timeout_) + " s; " +
           (attachments_of(frame, world).empty() ? "its obstacles stay where they are until it is back" : consequence(policy_)));
 }
 
 void FrameWatch::report_back(const FrameChange& change, Nanoseconds stamp, const World& world) {
   if (lost_.erase(change.frame) == 0) return;
-  std::string message = "frame " + quoted(world.frames()[change.frame]) + " is back";
+  std::string message = "frame " + in_quotes(world.frames()[change.frame]) + " is back";
   if (policy_ != LostFramePolicy::release)
     message += gap_words(change.distance, change.angle, std::min(FrameGap::speed, max_frame_speed_));
   publish_for_frame(events_, CableEvent::FRAME_BACK, change.frame, stamp, world, message);
@@ -159,7 +159,7 @@ void FrameWatch::release(int frame, Nanoseconds stamp, World& world) const {
     const EventSubject subject = subject_of(world, attachment);
     world.apply(edit::Unpin{attachment.name});
     events_.publish(CableEvent::UNPINNED, stamp, subject,
-                    "attachment " + quoted(attachment.name) + " is released, as its frame is lost; reset restores it");
+                    "attachment " + in_quotes(attachment.name) + " is released, as its frame is lost; reset restores it");
   }
 }
 

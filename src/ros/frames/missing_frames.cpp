@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "frames/frame_watch.h"
+#include "time/log_period.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/quoted_text.h"
 
@@ -15,7 +16,6 @@ namespace {
 /// Whoever publishes frames may have been started together with the node, and may need so long.
 const ros::WallDuration first_warning(5.0);
 /// Between warnings that something waits for frames.
-const ros::WallDuration reminder_period(10.0);
 /// Between looks at the trees of tf.
 const ros::WallDuration look_period(1.0);
 /// Longer lists are cut off in messages.
@@ -27,7 +27,7 @@ std::string list(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < shown; ++i) {
     const bool last = i + 1 == names.size();
-    text += (i == 0 ? "" : last ? " and " : ", ") + quoted(names[i]);
+    text += (i == 0 ? "" : last ? " and " : ", ") + in_quotes(names[i]);
   }
   return shown < names.size() ? text + " and " + std::to_string(names.size() - shown) + " more" : text;
 }
@@ -71,8 +71,8 @@ std::string unconnected_words(const OtherTrees& trees, const std::string& fixed_
   std::string words;
   for (const auto& [root, names] : trees)
     words += (words.empty() ? "" : "; ") + list(names) + (names.size() > 1 ? " are" : " is") + " on tf, but not connected to " +
-             quoted(fixed_frame) + ": set frame_id in the scene (to the root of " + (names.size() > 1 ? "their" : "its") +
-             " tree: " + quoted(root) + "), or publish a transform between the two";
+             in_quotes(fixed_frame) + ": set frame_id in the scene (to the root of " + (names.size() > 1 ? "their" : "its") +
+             " tree: " + in_quotes(root) + "), or publish a transform between the two";
   return words;
 }
 
@@ -85,10 +85,10 @@ void MissingFrames::watch() {
 
 void MissingFrames::report(const World& world, const TfInputs& frames) const {
   const std::vector<FrameReport> reports = frames.report();
-  const std::string fixed = quoted(world.frames().front());
+  const std::string fixed = in_quotes(world.frames().front());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     if (reports[i].status != FrameStatus::never_seen) continue;
-    const std::string frame = quoted(reports[i].name);
+    const std::string frame = in_quotes(reports[i].name);
     if (frames.inputs()[i].known) {
       ROS_INFO("tf has no transform from %s to %s yet: what it holds stays at its initial_pose until there is one", fixed.c_str(),
                frame.c_str());
@@ -126,7 +126,7 @@ void MissingFrames::warn_of_waiting(const SceneDesc& scene, const World& world, 
   if (!missing.empty())
     advice += ". If nothing else is to publish them, type, with x, y, z [m] as you like:" + commands_for(missing, scene);
   ROS_WARN("not shown yet: %s, because tf has no transform from %s to %s", list(world.findings().waiting).c_str(),
-           quoted(scene.frame_id).c_str(), advice.c_str());
+           in_quotes(scene.frame_id).c_str(), advice.c_str());
 }
 
 /// Those of waiting cables and nets are left to `warn_of_waiting`.

@@ -6,7 +6,7 @@ namespace verlet_cable {
 namespace {
 
 // As in tf2_ros: a static transform may be sent by each of many nodes at once.
-constexpr int queue_size = 1000;
+constexpr int tf_queue_size = 1000;
 
 }  // namespace
 
@@ -14,7 +14,7 @@ TfListener::TfListener(const ros::NodeHandle& node) : guard_(queue_), node_(node
   node_.setCallbackQueue(&guard_);
   const auto subscribe = [this](const std::string& topic, bool is_static) {
     using Event = const ros::MessageEvent<const tf2_msgs::TFMessage>&;
-    return node_.subscribe<Event>(topic, queue_size,
+    return node_.subscribe<Event>(topic, tf_queue_size,
                                   boost::function<void(Event)>([this, is_static](Event event) { receive(event, is_static); }));
   };
   dynamic_ = subscribe("/tf", false);

@@ -12,7 +12,7 @@ using visualization_msgs::InteractiveMarkerPose;
 using visualization_msgs::InteractiveMarkerUpdate;
 
 // As the library's.
-constexpr std::uint32_t queue_size = 100;
+constexpr std::uint32_t handle_queue_size = 100;
 const ros::WallDuration sign_of_life(0.5);
 const ros::WallDuration hold_time(1.0);   // in which nobody else drags what a client has dragged
 constexpr std::size_t longest_id = 1000;  // of a client, that is kept
@@ -25,10 +25,11 @@ HandleServer::HandleServer(const ros::NodeHandle& parent, const std::string& top
     : receive_(std::move(receive)) {
   ros::NodeHandle node(parent, topic);
   // Not latched: who comes gets all that is there, and as long as nobody listens none of it is put together and sent.
-  all_ = node.advertise<InteractiveMarkerInit>("update_full", queue_size,
+  all_ = node.advertise<InteractiveMarkerInit>("update_full", handle_queue_size,
                                                [this](const ros::SingleSubscriberPublisher& viewer) { viewer.publish(all()); });
-  updates_ = node.advertise<InteractiveMarkerUpdate>("update", queue_size);
-  feedback_ = node.subscribe<Feedback>("feedback", queue_size, [this](const Feedback::ConstPtr& feedback) { take(*feedback); });
+  updates_ = node.advertise<InteractiveMarkerUpdate>("update", handle_queue_size);
+  feedback_ =
+      node.subscribe<Feedback>("feedback", handle_queue_size, [this](const Feedback::ConstPtr& feedback) { take(*feedback); });
   timer_ = node.createWallTimer(sign_of_life, [this](const ros::WallTimerEvent&) {
     run_guarded("a sign of life", [this] {
       InteractiveMarkerUpdate update;

@@ -22,7 +22,7 @@ const ros::WallDuration show_period(0.05);
 /// rviz is heard of four times a second while a handle is dragged, even where the mouse does not move.
 const ros::WallDuration longest_silence(2);
 constexpr std::size_t most_requests = 200;  // between two updates
-constexpr double log_period = 1;            // [s]
+constexpr double hand_log_period = 1;       // [s]
 
 RequestedPlace place_of(const Handle& handle) {
   RequestedPlace place;
@@ -47,7 +47,7 @@ void Hands::receive(const Feedback& feedback) {
   const bool drags = feedback.event_type == Feedback::POSE_UPDATE;
   const std::string& frame = feedback.header.frame_id;
   if (frame.size() > most_name_characters) {
-    ROS_WARN_THROTTLE(log_period, "hands: header.frame_id: %s; allowed: frames that tf knows", quoted(frame).c_str());
+    ROS_WARN_THROTTLE(hand_log_period, "hands: header.frame_id: %s; allowed: frames that tf knows", in_quotes(frame).c_str());
     return;
   }
   Request request{feedback.marker_name, feedback.event_type, feedback.menu_entry_id, frame, feedback.pose};
@@ -56,7 +56,7 @@ void Hands::receive(const Feedback& feedback) {
   } else if (requests_.size() < most_requests) {
     requests_.push_back(std::move(request));
   } else {
-    ROS_WARN_THROTTLE(log_period, "hands: more than %zu requests of rviz at once; the others are ignored", most_requests);
+    ROS_WARN_THROTTLE(hand_log_period, "hands: more than %zu requests of rviz at once; the others are ignored", most_requests);
   }
 }
 
@@ -83,7 +83,7 @@ void Hands::apply(const Request& request) {
   if (request.type == Feedback::MENU_SELECT) result = select(handle, request.menu_entry);
   if (request.type == Feedback::MOUSE_UP) let_go(handle.name);
   if (const auto grab = grabs_.find(handle.name); grab != grabs_.end()) grab->second.last = ros::WallTime::now();
-  if (!result.ok) ROS_WARN_THROTTLE(log_period, "hands: %s: %s", handle.name.c_str(), result.message.c_str());
+  if (!result.ok) ROS_WARN_THROTTLE(hand_log_period, "hands: %s: %s", handle.name.c_str(), result.message.c_str());
 }
 
 EditResult Hands::drag(const Handle& handle, const Request& request) {
@@ -91,7 +91,7 @@ EditResult Hands::drag(const Handle& handle, const Request& request) {
   const Pose pose = read_pose("pose", requested_pose(request.pose), errors);
   const std::string& fixed_frame = simulation_.scene().frame_id;
   const std::optional<Pose> frame = simulation_.find_frame(request.frame.empty() ? fixed_frame : request.frame);
-  if (!frame) errors.push_back("header.frame_id: " + quoted(request.frame) + "; allowed: frames that tf knows, or empty");
+  if (!frame) errors.push_back("header.frame_id: " + in_quotes(request.frame) + "; allowed: frames that tf knows, or empty");
   if (!errors.empty()) return refused(errors);
   const Pose place = *frame * pose;
   return handle.attachment.empty() ? drag_node(handle, place) : move(handle.attachment, place);
@@ -117,7 +117,7 @@ EditResult Hands::select(const Handle& handle, std::uint32_t menu_entry) {
       return cut(handle);
     case HandleAction::reset:
       simulation_.reset([](const EditResult& result) {
-        if (!result.ok) ROS_WARN_THROTTLE(log_period, "hands: %s", result.message.c_str());
+        if (!result.ok) ROS_WARN_THROTTLE(hand_log_period, "hands: %s", result.message.c_str());
       });
       return {true, {}, {}};
   }
@@ -147,7 +147,7 @@ EditResult Hands::cut(const Handle& handle) {
 EditResult Hands::move(const std::string& name, Pose place) {
   const World& world = simulation_.world();
   const int index = find(world.attachments(), name);
-  if (index < 0) return refused({"attachment " + quoted(name) + " does not exist any more"});
+  if (index < 0) return refused({"attachment " + in_quotes(name) + " does not exist any more"});
   const Attachment& attachment = world.attachments()[index];
   if (attachment.body.is_cable())
     place.position = within_reach(world, attachment.body.index, attachment.node, name, place.position);

@@ -167,22 +167,23 @@ void Diagnostics::report_frames(Status& status) const {
     if (frame.too_fast) value += ", faster than max_frame_speed";
     status.add("frame " + frame.name, value);  // ok, late, lost, never seen, or of a body; its age [s]
     if (frame.status == FrameStatus::never_seen)
-      status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " never seen");
-    if (frame.status == FrameStatus::lost) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " lost");
-    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + quoted(frame.name) + " too fast");
+      status.mergeSummary(DiagnosticStatus::WARN, "frame " + in_quotes(frame.name) + " never seen");
+    if (frame.status == FrameStatus::lost)
+      status.mergeSummary(DiagnosticStatus::WARN, "frame " + in_quotes(frame.name) + " lost");
+    if (frame.too_fast) status.mergeSummary(DiagnosticStatus::WARN, "frame " + in_quotes(frame.name) + " too fast");
   }
   status.add("refused_transforms", simulation_.frames().buffer().refused_count());  // number since the start
   for (const auto& [frame, sources] : simulation_.frames().buffer().disputed()) {
     status.add("sources of " + frame, NameList(sources).text(""));  // the nodes that send a frame, if several do
     status.mergeSummary(DiagnosticStatus::WARN,
-                        "frame " + quoted(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
+                        "frame " + in_quotes(frame) + " comes from " + std::to_string(sources.size()) + " nodes");
   }
   for (const std::string& frame : simulation_.frames().buffer().mixed())
     status.mergeSummary(DiagnosticStatus::WARN,
-                        "frame " + quoted(frame) + " came on /tf and on /tf_static: start the node again");
+                        "frame " + in_quotes(frame) + " came on /tf and on /tf_static: start the node again");
   for (const auto& [frame, problem] : simulation_.frames().buffer().refused()) {
     status.add("refused " + escaped(frame), problem);  // why the last transform was refused
-    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + quoted(frame) + " refused");
+    status.mergeSummary(DiagnosticStatus::WARN, "tf of frame " + in_quotes(frame) + " refused");
   }
 }
 
@@ -197,7 +198,7 @@ void Diagnostics::report_obstacles(Status& status) const {
     status.add("obstacle " + obstacle.name,  // what is wrong with it
                (lost ? "stays where it was, as its frame is lost: " : "is not there yet, as its frame is not on tf: ") + frame);
     status.mergeSummary(DiagnosticStatus::WARN,
-                        "obstacle " + quoted(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
+                        "obstacle " + in_quotes(obstacle.name) + (lost ? " has lost its frame" : " waits for its frame"));
   }
   status.add("added", simulation_.added_obstacles().size());  // number of obstacles that markers added
   status.add("refused_markers", obstacles_.refused_count());  // number since the start

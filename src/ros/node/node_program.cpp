@@ -15,7 +15,7 @@ std::optional<int> answer_arguments(int argc, char** argv, const NodeProgram& pr
     std::cout << program.usage();
     return 0;
   }
-  std::cerr << program.name << ": " << quoted(argument) << "; allowed: --help and remappings of ROS\n" << program.usage();
+  std::cerr << program.name << ": " << in_quotes(argument) << "; allowed: --help and remappings of ROS\n" << program.usage();
   return 2;
 }
 

@@ -9,7 +9,7 @@
 namespace verlet_cable {
 namespace {
 
-constexpr std::uint32_t queue_size = 100;  // as that of tf2_ros
+constexpr std::uint32_t tf_queue_size = 100;  // as that of tf2_ros
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void BodyFrames::show(const SceneDesc& scene) {
 
 void BodyFrames::publish(const World& world, const ros::Time& stamp) {
   if (!broadcasts_ || world.bodies().empty() || stamp == std::exchange(last_, stamp)) return;
-  if (!publisher_) publisher_ = node_.advertise<tf2_msgs::TFMessage>("/tf", queue_size);
+  if (!publisher_) publisher_ = node_.advertise<tf2_msgs::TFMessage>("/tf", tf_queue_size);
   const auto message = boost::make_shared<tf2_msgs::TFMessage>();
   for (const SimulatedBody& body : world.bodies()) {
     if (body.is_junction || !is_there(world, body)) continue;

@@ -61,8 +61,8 @@ std::optional<std::string> coarse_drawing(const World& world, const DrawingFrame
     const double radius = CableMaterials(cable).smallest([](const MaterialDesc& material) { return material.radius; });
     const double farthest = (place - frame.origin).cwiseAbs().maxCoeff();
     if (!std::isfinite(farthest) || !(farthest > 0) || step_at(farthest) <= coarsest * radius) continue;
-    return "cable " + quoted(cable.model->name) + " is " + rounded_text(farthest) + " m from the origin of " +
-           quoted(frame.name) + ", where clouds and rviz, which have single precision, know places to " +
+    return "cable " + in_quotes(cable.model->name) + " is " + rounded_text(farthest) + " m from the origin of " +
+           in_quotes(frame.name) + ", where clouds and rviz, which have single precision, know places to " +
            rounded_text(step_at(farthest), 2) + " m only; `origin: " + origin_near(place, radius) +
            "` in the scene gives markers and clouds in a frame of their own there";
   }

@@ -50,8 +50,8 @@ void EventPublisher::publish(const WorldEvent& event, Nanoseconds stamp) const {
 void EventPublisher::publish(const StatusEvent& event, Nanoseconds stamp) const {
   const int node = std::max(event.node, 0);
   if (event.name == name_of(EventType::energy))
-    return publish(CableEvent::ENERGY, stamp, {event.cable, {}, 0, {}}, quoted(event.cable) + ": " + event.message);
-  const std::string message = quoted(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") +
+    return publish(CableEvent::ENERGY, stamp, {event.cable, {}, 0, {}}, in_quotes(event.cable) + ": " + event.message);
+  const std::string message = in_quotes(event.cable) + (event.has_ended ? ": " : " at node " + std::to_string(node) + ": ") +
                               event.name + (event.has_ended ? " " : ": ") + event.message;
   send(CableEvent::STATUS, stamp, {{event.cable, {}, node, event.name}}, message);
   if (event.has_ended)

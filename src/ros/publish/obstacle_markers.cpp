@@ -99,7 +99,7 @@ std::string set_shape(const Marker& marker, Obstacle& obstacle) {
       return are_equal(scale.x(), scale.y()) ? "" : scale_text + "equal x and y for a CYLINDER, no elliptic ones";
     case Marker::MESH_RESOURCE:
       if (marker.mesh_resource.size() > longest_uri)
-        return "mesh_resource: " + quoted(marker.mesh_resource) + ", of " + too_long(marker.mesh_resource, longest_uri);
+        return "mesh_resource: " + in_quotes(marker.mesh_resource) + ", of " + too_long(marker.mesh_resource, longest_uri);
       obstacle.shape = MeshShape{nullptr, marker.mesh_resource, scale};
       return "";
     default:
@@ -130,12 +130,12 @@ std::vector<Marker> shape_markers(const Shape& shape, const Pose& pose) {
 MarkerObstacle obstacle_of(const Marker& marker) {
   MarkerObstacle result;
   if (marker.ns.size() > most_name_characters) {
-    result.problem = "ns: " + quoted(marker.ns) + ", of " + too_long(marker.ns, most_name_characters);
+    result.problem = "ns: " + in_quotes(marker.ns) + ", of " + too_long(marker.ns, most_name_characters);
     return result;
   }
   result.obstacle.name = marker.ns + "/" + std::to_string(marker.id);
   if (!is_frame_name(marker.header.frame_id)) {
-    result.problem = "header.frame_id: " + quoted(marker.header.frame_id) + "; allowed: " + frame_words;
+    result.problem = "header.frame_id: " + in_quotes(marker.header.frame_id) + "; allowed: " + frame_words;
     return result;
   }
   result.problem = set_shape(marker, result.obstacle);

@@ -58,10 +58,10 @@ void append_nets_and_particles(const World& world, const Vector3& origin, std::v
 
 }  // namespace
 
-PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
+PointPublisher::PointPublisher(ros::NodeHandle& private_node, const SceneDesc&, const DrawingFrame& frame)
     : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("points", publisher_queue_size)), frame_(frame) {}
 
-void PointPublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
+void PointPublisher::show(const SceneDesc&, const DrawingFrame& frame) {
   frame_ = frame;
 }
 

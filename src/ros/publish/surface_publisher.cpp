@@ -64,10 +64,10 @@ void append_points(const SimulatedCable& cable, std::uint32_t cable_id, double c
 
 }  // namespace
 
-SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc& scene, const DrawingFrame& frame)
+SurfacePublisher::SurfacePublisher(ros::NodeHandle& private_node, const SceneDesc&, const DrawingFrame& frame)
     : publisher_(private_node.advertise<sensor_msgs::PointCloud2>("surface", publisher_queue_size)), frame_(frame) {}
 
-void SurfacePublisher::show(const SceneDesc& scene, const DrawingFrame& frame) {
+void SurfacePublisher::show(const SceneDesc&, const DrawingFrame& frame) {
   frame_ = frame;
 }
 

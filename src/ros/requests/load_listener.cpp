@@ -5,16 +5,16 @@
 #include "edit_requests/checked_load.h"
 #include "edit_requests/error_text.h"
 #include "requests/requested.h"
+#include "time/log_period.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
 namespace {
 
 /// What comes while a step takes long: a second of a thousand a second.
-constexpr int queue_size = 1000;
+constexpr int load_queue_size = 1000;
 /// Each topic is registered with the master by a call: those of a large scene come with the next updates.
-constexpr int most_at_once = 20;
-constexpr double log_period = 5;  // [s] between warnings about what may last
+constexpr int most_loads_at_once = 20;
 
 const LoadWords& topic_words() {
   static const LoadWords words{"body", "wrench.force", "wrench.torque", "header.frame_id"};
@@ -33,7 +33,7 @@ void LoadListener::follow_scene() {
   if (scene_version_ == simulation_.scene_version()) return;
   std::set<std::string> names;
   for (const BodyDesc& body : simulation_.scene().bodies) names.insert(body.name);
-  int left = most_at_once;
+  int left = most_loads_at_once;
   for (auto subscriber = subscribers_.begin(); subscriber != subscribers_.end() && left > 0;) {
     const bool is_gone = names.count(subscriber->first) == 0;
     if (is_gone) --left;
@@ -44,7 +44,7 @@ void LoadListener::follow_scene() {
     if (subscribers_.count(name) > 0) continue;
     --left;
     subscribers_[name] = node_.subscribe<geometry_msgs::WrenchStamped>(
-        name, queue_size, [this, name](const geometry_msgs::WrenchStampedConstPtr& message) { receive(name, *message); });
+        name, load_queue_size, [this, name](const geometry_msgs::WrenchStampedConstPtr& message) { receive(name, *message); });
   }
   if (left > 0) scene_version_ = simulation_.scene_version();
 }

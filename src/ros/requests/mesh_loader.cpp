@@ -21,7 +21,7 @@ LoadedMesh load(const MeshRequest& request, const std::string& scene_directory, 
   Patience patience;
   patience.cancelled = &stopped;
   const auto fail = [&](const std::string& what) {
-    loaded.problem = verlet_cable::quoted(request.uri) + ": " + what + "; allowed: " + std::string(mesh_words);
+    loaded.problem = verlet_cable::in_quotes(request.uri) + ": " + what + "; allowed: " + std::string(mesh_words);
   };
   try {
     loaded.mesh = cache.read(file_of(request.uri, {false, scene_directory}), request.scale, patience);

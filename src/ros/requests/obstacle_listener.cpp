@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "publish/obstacle_markers.h"
+#include "time/log_period.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
@@ -12,8 +13,7 @@ namespace {
 
 using visualization_msgs::Marker;
 
-constexpr int queue_size = 10;
-constexpr double log_period = 5;  // [s] between warnings about what may last
+constexpr int obstacle_queue_size = 10;
 /// What could not be read is not tried again for so long: it is asked for with each message.
 const ros::WallDuration failure_memory(5.0);
 constexpr std::size_t most_failures = 100;
@@ -34,7 +34,8 @@ ObstacleListener::ObstacleListener(ros::NodeHandle& private_node, Simulation& si
       loader_(private_node.getCallbackQueue(), simulation.scene().scene_directory,
               [this](const LoadedMesh& loaded) { receive_mesh(loaded); }),
       subscriber_(private_node.subscribe<visualization_msgs::MarkerArray>(
-          "obstacles", queue_size, [this](const visualization_msgs::MarkerArrayConstPtr& markers) { receive(*markers); })) {}
+          "obstacles", obstacle_queue_size,
+          [this](const visualization_msgs::MarkerArrayConstPtr& markers) { receive(*markers); })) {}
 
 void ObstacleListener::receive(const visualization_msgs::MarkerArray& markers) {
   if (markers.markers.size() > most_markers) {
@@ -51,7 +52,7 @@ void ObstacleListener::receive(const visualization_msgs::MarkerArray& markers) {
 }
 
 void ObstacleListener::refuse_marker(const std::string& name, const std::string& problem) {
-  refuse("marker " + quoted(name) + ": " + problem);
+  refuse("marker " + in_quotes(name) + ": " + problem);
 }
 
 void ObstacleListener::refuse(const std::string& problem) {
@@ -101,8 +102,9 @@ std::string ObstacleListener::wait_for_mesh(const Pending& wanted) {
   const auto failed = failures_.find(wanted.mesh.uri);
   if (failed != failures_.end() && ros::WallTime::now() < failed->second.time + failure_memory) return failed->second.problem;
   if ((pending_.size() >= most_pending && !pending_.count(name)) || !loader_.request(wanted.mesh)) {
-    return "mesh_resource: " + verlet_cable::quoted(wanted.mesh.uri) + ": too many obstacles wait to be read; allowed: at most " +
-           std::to_string(most_pending) + ", with " + std::to_string(MeshLoader::most_waiting) + " meshes";
+    return "mesh_resource: " + verlet_cable::in_quotes(wanted.mesh.uri) +
+           ": too many obstacles wait to be read; allowed: at most " + std::to_string(most_pending) + ", with " +
+           std::to_string(MeshLoader::most_waiting) + " meshes";
   }
   const auto before = pending_.find(name);
   if (before != pending_.end() && !(before->second.mesh == wanted.mesh)) drop_pending(name);

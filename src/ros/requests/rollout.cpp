@@ -74,10 +74,10 @@ std::map<int, FrameTrack> read_motion(const RolloutGoal& goal, const World& worl
     const std::string problem = transform_problem(received);
     const auto frame = std::find(names.begin() + 1, names.end(), transform.child_frame_id);
     if (transform.header.frame_id != names.front()) {
-      errors.push_back(key + ".header.frame_id: " + verlet_cable::quoted(transform.header.frame_id) +
-                       "; allowed: the fixed frame " + verlet_cable::quoted(names.front()) + ", or empty");
+      errors.push_back(key + ".header.frame_id: " + verlet_cable::in_quotes(transform.header.frame_id) +
+                       "; allowed: the fixed frame " + verlet_cable::in_quotes(names.front()) + ", or empty");
     } else if (frame == names.end() || world.is_body_frame(static_cast<int>(frame - names.begin()))) {
-      errors.push_back(key + ".child_frame_id: " + verlet_cable::quoted(transform.child_frame_id) +
+      errors.push_back(key + ".child_frame_id: " + verlet_cable::in_quotes(transform.child_frame_id) +
                        "; allowed: " + moved_frames(world));
     } else if (!problem.empty()) {
       errors.push_back(key + ": " + problem);

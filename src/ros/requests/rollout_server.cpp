@@ -11,7 +11,7 @@ namespace verlet_cable {
 namespace {
 
 // As actionlib's.
-constexpr std::uint32_t queue_size = 50;
+constexpr std::uint32_t rollout_queue_size = 50;
 const ros::WallDuration status_period(0.2);
 /// How long a goal that has ended is listed still.
 constexpr Nanoseconds status_memory = 5'000'000'000;
@@ -31,14 +31,14 @@ RolloutServer::RolloutServer(const ros::NodeHandle& node, const std::string& nam
     : ActionServerBase(std::move(accept), std::move(cancel), false), node_(node, name) {}
 
 void RolloutServer::initialize() {
-  result_ = node_.advertise<RolloutActionResult>("result", queue_size);
-  feedback_ = node_.advertise<RolloutActionFeedback>("feedback", queue_size);
-  status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", queue_size, true);
-  goals_ = node_.subscribe<RolloutActionGoal>("goal", queue_size, [this](const RolloutActionGoalConstPtr& goal) {
+  result_ = node_.advertise<RolloutActionResult>("result", rollout_queue_size);
+  feedback_ = node_.advertise<RolloutActionFeedback>("feedback", rollout_queue_size);
+  status_ = node_.advertise<actionlib_msgs::GoalStatusArray>("status", rollout_queue_size, true);
+  goals_ = node_.subscribe<RolloutActionGoal>("goal", rollout_queue_size, [this](const RolloutActionGoalConstPtr& goal) {
     if (!is_too_long(goal->goal_id, "rollout/goal: goal_id.id")) goalCallback(goal);
   });
   cancels_ = node_.subscribe<actionlib_msgs::GoalID>(
-      "cancel", queue_size, [this](const actionlib_msgs::GoalIDConstPtr& goal) { receive_cancel(goal); });
+      "cancel", rollout_queue_size, [this](const actionlib_msgs::GoalIDConstPtr& goal) { receive_cancel(goal); });
   timer_ = node_.createWallTimer(status_period,
                                  [this](const ros::WallTimerEvent&) { run_guarded("a status", [this] { publishStatus(); }); });
 }

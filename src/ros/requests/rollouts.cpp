@@ -18,7 +18,7 @@ namespace {
 constexpr int niceness = 10;
 const ros::WallDuration feedback_period(0.1);
 /// Rollouts that a thread runs at once. More would let the first ones wait for the last ones.
-constexpr std::size_t most_at_once = 8;
+constexpr std::size_t most_rollouts_at_once = 8;
 
 RolloutResult failure(const std::string& message) {
   RolloutResult result;
@@ -61,7 +61,7 @@ void Rollouts::accept(Server::GoalHandle goal) {
     return reject("limits.rollouts: " + std::to_string(most) + " run or wait already; allowed: no more than these");
   const std::optional<Snapshot> snapshot = simulation_.snapshot(request.snapshot);
   if (!snapshot)
-    return reject("snapshot: " + verlet_cable::quoted(request.snapshot) +
+    return reject("snapshot: " + verlet_cable::in_quotes(request.snapshot) +
                   "; allowed: a saved one, or empty for the present state");
   RolloutStart start{snapshot->world, {}, snapshot->scene.jump_speed};
   for (const SavedFrame& frame : snapshot->frames) start.frames.push_back(frame.input);
@@ -107,7 +107,7 @@ Rollouts::Jobs Rollouts::take_waiting() {
   Jobs jobs;
   if (ending_) return jobs;
   const std::size_t share = (waiting_.size() + threads_.size() - 1) / std::max<std::size_t>(1, threads_.size());
-  for (std::size_t i = 0; i < std::min(std::max<std::size_t>(1, share), most_at_once); ++i) {
+  for (std::size_t i = 0; i < std::min(std::max<std::size_t>(1, share), most_rollouts_at_once); ++i) {
     jobs.push_back(std::move(waiting_.front()));
     waiting_.pop_front();
   }

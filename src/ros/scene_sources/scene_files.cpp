@@ -22,7 +22,7 @@ constexpr std::size_t longest_path = 4096;
 constexpr std::size_t longest_text = 1 << 20;
 
 [[noreturn]] void reject(const std::string& key, const std::string& file, const std::string& allowed) {
-  throw SceneError({key + ": " + quoted(file) + "; allowed: " + allowed});
+  throw SceneError({key + ": " + in_quotes(file) + "; allowed: " + allowed});
 }
 
 bool is_package_name(const std::string& name) {
@@ -52,9 +52,9 @@ fs::path directory_file(const std::string& key, const std::string& file, const s
   std::error_code error;
   if (scene_directory.empty()) reject(key, file, "package://PACKAGE/PATH only, as scene_directory is empty");
   const fs::path directory = fs::canonical(scene_directory, error);
-  if (error) reject(key, file, "package://PACKAGE/PATH only, as there is no scene_directory " + quoted(scene_directory));
+  if (error) reject(key, file, "package://PACKAGE/PATH only, as there is no scene_directory " + in_quotes(scene_directory));
   const fs::path path = fs::canonical(directory / file, error);
-  const std::string allowed = "files inside scene_directory " + quoted(scene_directory) + ", or package://PACKAGE/PATH";
+  const std::string allowed = "files inside scene_directory " + in_quotes(scene_directory) + ", or package://PACKAGE/PATH";
   if (error || !is_inside(path, directory)) reject(key, file, allowed);
   return path;
 }
@@ -76,11 +76,11 @@ std::string writable_scene_file(const std::string& key, const std::string& file,
   std::error_code error;
   if (scene_directory.empty()) reject(key, file, "none, as scene_directory is empty");
   const fs::path directory = fs::canonical(scene_directory, error);
-  if (error) reject(key, file, "none, as there is no scene_directory " + quoted(scene_directory));
+  if (error) reject(key, file, "none, as there is no scene_directory " + in_quotes(scene_directory));
   const fs::path path = directory / file, parent = fs::canonical(path.parent_path(), error);
   const bool has_name = path.has_filename() && path.filename() != "." && path.filename() != "..";
   if (error || !has_name || !is_inside(parent, directory))
-    reject(key, file, "files in directories inside scene_directory " + quoted(scene_directory));
+    reject(key, file, "files in directories inside scene_directory " + in_quotes(scene_directory));
   const fs::path place = parent / path.filename();
   const fs::file_status status = fs::symlink_status(place, error);
   // What a link leads to may be anywhere.

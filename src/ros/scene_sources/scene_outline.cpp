@@ -18,7 +18,7 @@ std::string scene_outline(const SceneDesc& scene) {
   add(scene.particles.size(), "particle", "particles");
   add(scene.bodies.size(), "body", "bodies");
   add(all_obstacles(scene).size(), "obstacle", "obstacles");
-  return outline + "fixed frame " + quoted(scene.frame_id) + ", time step " + rounded_text(1e3 * scene.time_step) + " ms";
+  return outline + "fixed frame " + in_quotes(scene.frame_id) + ", time step " + rounded_text(1e3 * scene.time_step) + " ms";
 }
 
 }  // namespace verlet_cable

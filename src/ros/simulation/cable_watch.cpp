@@ -16,7 +16,7 @@ void CableWatch::report_status(const StepResult& result, Nanoseconds stamp, cons
     ++faults_;
     const std::string subject = name_of(world, result.body);
     events_.publish(CableEvent::FAULT, stamp, {subject, {}, result.node, {}},
-                    "the simulation of " + quoted(subject) + " failed at node " + std::to_string(result.node) +
+                    "the simulation of " + in_quotes(subject) + " failed at node " + std::to_string(result.node) +
                         " and has stopped; call reset or restore_state to go on");
   }
 }
@@ -51,7 +51,7 @@ void CableWatch::report_starts(const StartsReported& before, Nanoseconds stamp, 
     ROS_WARN(
         "the initial shape of cable %s does not fit its attachments and junctions: it hangs between them instead, in a "
         "loop where it is joined with itself",
-        quoted(world.findings().misfits[i]).c_str());
+        in_quotes(world.findings().misfits[i]).c_str());
   statuses_.observe_start(world, before.unsettled);
   publish(stamp, world.time());
 }

@@ -28,7 +28,7 @@ EditResult Simulation::set_obstacle(Obstacle obstacle, const std::string& frame)
 std::optional<EditResult> Simulation::refused_frame(const std::string& key, const std::string& frame) const {
   if (world_.frames().size() < most_frames || find_frame_id(frame) < world_.frames().size()) return std::nullopt;
   return EditResult{false,
-                    key + ": " + quoted(frame) + "; allowed: one of the " + std::to_string(most_frames) +
+                    key + ": " + in_quotes(frame) + "; allowed: one of the " + std::to_string(most_frames) +
                         " that were used since the last reset",
                     {}};
 }

@@ -1,20 +1,10 @@
 #include "edit_requests/named_edits.h"
+#include "simulation/edit_result.h"
 #include "simulation/simulation.h"
 #include "verlet_cable/core/body_name.h"
 #include "verlet_cable/core/quoted_text.h"
 
 namespace verlet_cable {
-namespace {
-
-EditResult done(const std::string& message) {
-  return {true, message, {}};
-}
-EditResult refused(const std::string& message) {
-  return {false, message, {}};
-}
-
-}  // namespace
-
 EditResult Simulation::refused_before_start() const {
   const std::string what = "the simulation has not started: ";
   if (start_) return refused(what + "its scene is being built");
@@ -57,7 +47,7 @@ EditResult Simulation::move_attachment(const std::string& name, const Pose& offs
   const int index = find(world_.attachments(), name);
   if (index < 0) return refused_attachment(world_, name);
   moves_.send(name, world_.attachments()[index].pose, offset);
-  return done("attachment " + quoted(name) + " moves to its new place");
+  return done("attachment " + in_quotes(name) + " moves to its new place");
 }
 
 EditResult Simulation::cut(const Location& place) {

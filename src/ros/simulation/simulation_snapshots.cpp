@@ -6,6 +6,7 @@
 
 #include "scene/world_file.h"
 #include "scene_sources/scene_files.h"
+#include "simulation/edit_result.h"
 #include "simulation/simulation.h"
 #include "verlet_cable/core/name_list.h"
 #include "verlet_cable/core/quoted_text.h"
@@ -17,15 +18,8 @@ namespace {
 
 constexpr std::size_t longest_name = 100;
 
-EditResult done(const std::string& message) {
-  return {true, message, {}};
-}
-EditResult refused(const std::string& message) {
-  return {false, message, {}};
-}
-
 EditResult refused_both(const std::string& name, const std::string& file) {
-  return refused("name, file: " + quoted(name) + " and " + quoted(file) + "; allowed: one of them");
+  return refused("name, file: " + in_quotes(name) + " and " + in_quotes(file) + "; allowed: one of them");
 }
 
 /// As a whole, or not at all. Throws SceneError.
@@ -38,7 +32,7 @@ void write_file(const std::string& path, const std::string& bytes) {
   if (file) std::filesystem::rename(part, path, error);
   if (file && !error) return;
   std::filesystem::remove(part, error);
-  throw SceneError({"file: " + quoted(path) + " cannot be written; allowed: where the node may write"});
+  throw SceneError({"file: " + in_quotes(path) + " cannot be written; allowed: where the node may write"});
 }
 
 std::string names_of(const std::map<std::string, Snapshot>& snapshots) {
@@ -59,20 +53,20 @@ EditResult Simulation::save_state(const std::string& name, const std::string& fi
     } catch (const SceneError& error) {
       return refused(error.what());
     }
-    return done("saved to " + quoted(file));
+    return done("saved to " + in_quotes(file));
   }
   if (name.size() > longest_name || !is_name(name)) {
-    return refused("name: " + quoted(name) + "; allowed: " + name_words + ", at most " + std::to_string(longest_name));
+    return refused("name: " + in_quotes(name) + "; allowed: " + name_words + ", at most " + std::to_string(longest_name));
   }
   const auto known = snapshots_.find(name);
   const auto most = static_cast<std::size_t>(scene_.limits.snapshots);
   if (known == snapshots_.end() && snapshots_.size() >= most) {
-    return refused("name: " + quoted(name) + "; limits.snapshots allows " + std::to_string(most) +
+    return refused("name: " + in_quotes(name) + "; limits.snapshots allows " + std::to_string(most) +
                    "; allowed: to replace one of them: " + names_of(snapshots_));
   }
   const bool replaces = known != snapshots_.end();
   snapshots_.insert_or_assign(name, Snapshot{world_, scene_, stamp_, frames_.save(), added_obstacles_});
-  return done("saved as " + quoted(name) + (replaces ? ", which is replaced" : ""));
+  return done("saved as " + in_quotes(name) + (replaces ? ", which is replaced" : ""));
 }
 
 EditResult Simulation::restore_state(const std::string& name, const std::string& file) {
@@ -80,14 +74,14 @@ EditResult Simulation::restore_state(const std::string& name, const std::string&
   if (!name.empty() && !file.empty()) return refused_both(name, file);
   if (!file.empty()) {
     try {
-      return restore(read_snapshot(file), "restored the file " + quoted(file));
+      return restore(read_snapshot(file), "restored the file " + in_quotes(file));
     } catch (const std::exception& error) {
       return refused(error.what());
     }
   }
   const auto found = snapshots_.find(name);
-  if (found == snapshots_.end()) return refused("name: " + quoted(name) + "; allowed: " + names_of(snapshots_));
-  return restore(found->second, "restored the snapshot " + quoted(name));
+  if (found == snapshots_.end()) return refused("name: " + in_quotes(name) + "; allowed: " + names_of(snapshots_));
+  return restore(found->second, "restored the snapshot " + in_quotes(name));
 }
 
 /// Of the present scene, with the frames where they are now. Throws SceneError, std::invalid_argument.
@@ -97,7 +91,7 @@ Snapshot Simulation::read_snapshot(const std::string& file) const {
     try {
       return read_world(scene_, read_file(path));
     } catch (const ResourceError& error) {
-      throw SceneError({"file: " + quoted(file) + ": " + error.what()});
+      throw SceneError({"file: " + in_quotes(file) + ": " + error.what()});
     }
   }();
   Snapshot snapshot{std::move(saved.world), {}, stamp_, frames_.save(), {}};

@@ -12,7 +12,7 @@ namespace verlet_cable {
 namespace {
 
 /// How often who waits looks whether the node ends.
-constexpr std::chrono::milliseconds patience(50);
+constexpr std::chrono::milliseconds look_period(50);
 
 class Call : public ros::CallbackInterface {
  public:
@@ -55,7 +55,7 @@ std::future<EditResult> OwnerCalls::begin(std::function<void(const Answer&)> req
 EditResult OwnerCalls::wait(std::future<EditResult> answer) const {
   // Not ros::ok(), which is true until all callbacks have ended.
   while (!ending_ && !ros::isShuttingDown()) {
-    if (answer.wait_for(patience) == std::future_status::ready) return answer.get();
+    if (answer.wait_for(look_period) == std::future_status::ready) return answer.get();
   }
   return {false, "the node shuts down", {}};
 }

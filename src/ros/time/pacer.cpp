@@ -14,7 +14,7 @@ constexpr double longest_busy = 0.2;
 constexpr double longest_scale = 0.5, shortest_scale = 0.1;
 /// A machine that has not caught up for so long [s] will not: from then on less and less is left to catch up, by a factor of e in
 /// each `surrender` [s], down to `shortest_backlog` [s].
-constexpr double patience = 2, surrender = 0.5, shortest_backlog = 0.09;
+constexpr double catching_up = 2, surrender = 0.5, shortest_backlog = 0.09;
 /// Over which the mean way of a step is taken [s].
 constexpr double way_memory = 2;
 /// Of what the machine needed for the last 25 steps or so, from step to step.
@@ -43,7 +43,7 @@ Nanoseconds Pacer::resume(Nanoseconds simulated, Nanoseconds target) {
   last_target_ = target;
   if (beyond <= 0) return simulated;
   const Nanoseconds time = grid_.step_at_or_after(simulated + beyond);
-  if (!leapt || busy_ > patience) left_out_ += time - simulated;
+  if (!leapt || busy_ > catching_up) left_out_ += time - simulated;
   drop(time - simulated);
   return time;
 }
@@ -62,7 +62,7 @@ void Pacer::done(Nanoseconds simulated, Nanoseconds time, Nanoseconds target) {
   left_out_ += std::max<Nanoseconds>(time - simulated - grid_.step(), 0);
   const double way = seconds(time - simulated), longest = seconds(longest_backlog_);
   usual_way_ += std::min(way / way_memory, 1.0) * (way - usual_way_);
-  const double given_up = std::exp(-std::max(busy_ - patience, 0.0) / surrender);
+  const double given_up = std::exp(-std::max(busy_ - catching_up, 0.0) / surrender);
   const double backlog =
       std::max(given_up * longest, std::min(std::max(shortest_backlog, steps_of_backlog * usual_way_), longest));
   const double scale = std::max(given_up * longest_scale, std::clamp(steps_of_scale * usual_way_, shortest_scale, longest_scale));

@@ -36,7 +36,7 @@ void check_output(const char* option, const std::string& path, const std::vector
   if (!problem.empty()) errors.push_back(std::string(option) + ": " + tools::cannot_write(path, problem));
   for (const std::string& other : others)
     if (!other.empty() && tools::is_same_file(path, other))
-      errors.push_back(std::string(option) + ": " + quoted(path) + " is " + quoted(other) + "; allowed: another file");
+      errors.push_back(std::string(option) + ": " + in_quotes(path) + " is " + in_quotes(other) + "; allowed: another file");
 }
 
 /// Why files cannot be made in a directory that may not be there yet.
@@ -65,10 +65,10 @@ void check_predictions(const std::string& directory, const std::vector<std::stri
   for (const std::string& recording : recordings) {
     const std::string path = prediction_path(directory, recording);
     if (!names.insert(path).second)
-      errors.push_back("--predictions: two recordings would be " + quoted(path) +
+      errors.push_back("--predictions: two recordings would be " + in_quotes(path) +
                        "; allowed: recordings with names of their own");
     if (tools::is_same_file(path, recording))
-      errors.push_back("--predictions: " + quoted(path) + " is a recording; allowed: another directory");
+      errors.push_back("--predictions: " + in_quotes(path) + " is a recording; allowed: another directory");
     const std::string refused = std::filesystem::is_directory(directory) ? tools::why_not_writable(path) : "";
     if (!refused.empty()) errors.push_back("--predictions: " + tools::cannot_write(path, refused));
   }

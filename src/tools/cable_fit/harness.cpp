@@ -79,9 +79,9 @@ void check_cables(const Harness& harness, ErrorList& errors) {
   for (std::size_t i = 0; i < harness.cables.size(); ++i) {
     const HarnessCable& cable = harness.cables[i];
     const std::string key = "cables[" + std::to_string(i) + "].";
-    if (!is_name(cable.name)) errors.add(key + "name", quoted(cable.name), name_words);
+    if (!is_name(cable.name)) errors.add(key + "name", in_quotes(cable.name), name_words);
     for (std::size_t k = 0; k < i; ++k)
-      if (harness.cables[k].name == cable.name) errors.add(key + "name", quoted(cable.name), "a name that no other cable has");
+      if (harness.cables[k].name == cable.name) errors.add(key + "name", in_quotes(cable.name), "a name that no other cable has");
     if (cable.first_marker != next)
       errors.add(key + "markers", "[" + std::to_string(cable.first_marker) + ", " + std::to_string(cable.last_marker) + "]",
                  "from " + std::to_string(next) + " on, behind those of the cable before");

@@ -11,9 +11,9 @@
 namespace verlet_cable::cable_fit {
 namespace {
 
-constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1};  // EI over the linear density [N m^3 / kg]
-constexpr double starting_times[] = {0.01, 0.1};                       // [s] damping over stiffness
-constexpr int coarse_segments = 16;
+/// Where branches' parameters begin.
+constexpr double branch_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1};  // EI over the linear density [N m^3 / kg]
+constexpr double starting_times[] = {0.01, 0.1};                     // [s] damping over stiffness
 
 /// Fits of parts of the recordings begin far off, that of all of them begins where one of these ended.
 constexpr Ending from_guess{4, 2, 5e-3, 0}, from_part{2, 1, 1e-3, 0};
@@ -46,7 +46,7 @@ std::vector<double> coarse_harness_search(Problem problem, const HarnessSettings
   problem.settings.segments = std::min(problem.settings.segments, coarse_segments);
   std::vector<double> best;
   double least = infinity;
-  for (const double bending : starting_bending)
+  for (const double bending : branch_bending)
     for (const double time : starting_times) {
       std::vector<double> values = first_harness_guess(settings, bending, time * bending);
       double cost = 0;

@@ -15,7 +15,6 @@ namespace {
 
 constexpr double starting_bending[] = {1e-3, 3e-3, 1e-2, 3e-2, 1e-1, 3e-1, 1};  // EI over the linear density [N m^3 / kg]
 constexpr double starting_damping[] = {1e-4, 1e-3, 5e-3};                       // of bending, likewise [N m^3 s / kg]
-constexpr int coarse_segments = 16;                                             ///< of the search
 constexpr Ending for_valleys{2, 0, 1e-2, 0};                                    ///< far enough to tell them apart
 constexpr int few_segments = 24;                                                ///< of a fit's first part
 constexpr double tolerance_with_few = 1e-2;

@@ -27,6 +27,8 @@ int most_simulations(const Problem& problem, int recordings, const Ending& endin
 /// of recordings; a value a parameter.
 std::vector<double> coarse_search(const Problem& problem, const std::vector<int>& training);
 
+constexpr int coarse_segments = 16;  ///< of a search
+
 /// Finds the parameters that predict some of the recordings best, from those given: Levenberg-Marquardt (Ceres).
 std::vector<double> fit(const Problem& problem, const std::vector<int>& training, std::vector<double> values,
                         const Ending& ending = for_parameters);

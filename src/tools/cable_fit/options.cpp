@@ -29,16 +29,16 @@ void check_required(const Options& options, bool left_out, std::vector<std::stri
         "no recordings; type: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml; cable_fit --help lists the options");
   std::set<std::string> seen;
   for (const std::string& path : options.recordings)
-    if (!seen.insert(path).second) errors.push_back(quoted(path) + ": given twice; allowed: each recording once");
+    if (!seen.insert(path).second) errors.push_back(in_quotes(path) + ": given twice; allowed: each recording once");
   if (!options.harness.empty()) {
     if (!options.name.empty())
-      errors.push_back("--name: " + quoted(options.name) + "; allowed: none, cables of a harness have theirs");
+      errors.push_back("--name: " + in_quotes(options.name) + "; allowed: none, cables of a harness have theirs");
     if (!options.centre_line.empty())
-      errors.push_back("--centre-line: " + quoted(options.centre_line) + "; allowed: none with --harness");
+      errors.push_back("--centre-line: " + in_quotes(options.centre_line) + "; allowed: none with --harness");
   } else if (options.name.empty()) {
     errors.push_back(std::string("--name: missing; allowed: ") + name_words);
   } else if (!is_name(options.name)) {
-    errors.push_back("--name: " + quoted(options.name) + "; allowed: " + name_words);
+    errors.push_back("--name: " + in_quotes(options.name) + "; allowed: " + name_words);
   }
   if (options.output.empty()) errors.emplace_back("--output: missing; allowed: the name of a file");
 }

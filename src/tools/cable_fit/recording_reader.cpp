@@ -88,7 +88,7 @@ class RecordingReader {
     const std::vector<std::string> cells = csv_cells(line);
     names_ = column_names(cells.size() / 3);
     if (cells == names_ && cells.size() / 3 >= fewest_markers) return true;
-    add_line_error("header " + quoted(line),
+    add_line_error("header " + in_quotes(line),
                    "t,x0,y0,z0,x1,y1,z1,... with " + std::to_string(fewest_markers) + " markers or more");
     return false;
   }
@@ -109,7 +109,7 @@ class RecordingReader {
       const std::optional<double> number = parse_number(cells[i]);
       numbers.push_back(number.value_or(0));
       if (!number || !coordinate.contains(*number))
-        add_line_error(names_[i] + " " + quoted(cells[i]), coordinate.text(i == 0 ? "s" : "m"));
+        add_line_error(names_[i] + " " + in_quotes(cells[i]), coordinate.text(i == 0 ? "s" : "m"));
     }
     if (found_ != found_before) return;
     if (!recording_.times.empty() && numbers[0] <= recording_.times.back())

@@ -79,7 +79,7 @@ void report(RunEnd end, const char* signal, double time) {
 std::string frames_text(const std::vector<std::string>& frames) {
   const std::size_t listed = std::min(frames.size(), most_noted);
   std::string text = frames.size() == 1 ? "frame" : "frames";
-  for (std::size_t i = 0; i < listed; ++i) text += (i == 0 ? " " : ", ") + quoted(frames[i]);
+  for (std::size_t i = 0; i < listed; ++i) text += (i == 0 ? " " : ", ") + in_quotes(frames[i]);
   return listed < frames.size() ? text + " and " + std::to_string(frames.size() - listed) + " more" : text;
 }
 

@@ -91,16 +91,16 @@ void check_holders(const Options& options, const SceneDesc& scene, const Motion&
   const std::vector<std::string> unused = unused_frames(scene, motion);
   for (const std::string& frame : unplaced_holders(scene, motion)) {
     const std::string nearest = nearest_name(frame, unused);
-    errors.push_back(tools::path_text(options.scene) + ": frame " + quoted(frame) +
+    errors.push_back(tools::path_text(options.scene) + ": frame " + in_quotes(frame) +
                      ": it has no pose; allowed: initial_pose: [x, y, z, roll, pitch, yaw] (m, rad) beside frame: " +
                      escaped(frame) + " in the scene, or rows of it in --motion MOTION.csv" +
-                     (nearest.empty() ? "" : " (did you mean " + quoted(nearest) + ", which the scene does not use?)"));
+                     (nearest.empty() ? "" : " (did you mean " + in_quotes(nearest) + ", which the scene does not use?)"));
   }
 }
 
 void check_motion(const Options& options, const SceneDesc& scene, const Motion& motion, std::vector<std::string>& errors) {
   if (motion.count(scene.frame_id))
-    errors.push_back(tools::path_text(options.motion) + ": frame " + quoted(scene.frame_id) +
+    errors.push_back(tools::path_text(options.motion) + ": frame " + in_quotes(scene.frame_id) +
                      " moves; allowed: any but the fixed frame");
   const std::size_t errors_before = errors.size();
   check_holders(options, scene, motion, errors);

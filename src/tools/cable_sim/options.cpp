@@ -27,7 +27,7 @@ void require_ending(const char* option, const std::string& path, const std::vect
     if (has_ending(path, ending)) return;
     allowed += (allowed.empty() ? "" : " or ") + ending;
   }
-  errors.push_back(std::string(option) + ": " + quoted(path) + "; allowed: a name that ends in " + allowed);
+  errors.push_back(std::string(option) + ": " + in_quotes(path) + "; allowed: a name that ends in " + allowed);
 }
 
 }  // namespace
@@ -70,7 +70,8 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   if (options.has_rate) options.rate = rate;
   for (const std::string& scene : scenes) {
     if (!options.scene.empty())
-      errors.push_back(quoted(scene) + ": a second scene; allowed: one, and " + quoted(options.scene) + " is given already");
+      errors.push_back(in_quotes(scene) + ": a second scene; allowed: one, and " + in_quotes(options.scene) +
+                       " is given already");
     if (scene.empty()) errors.push_back("\"\": an empty argument; allowed: the name of a scene file");
     if (options.scene.empty()) options.scene = scene;
   }

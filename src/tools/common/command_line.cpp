@@ -149,7 +149,7 @@ void CommandLine::add(const std::string& name, const std::string& placeholder, c
       if (value == no_value && !is_flag) {
         errors_.push_back(name + ": no value; allowed: " + allowed);
       } else if (!read(value)) {
-        errors_.push_back(name + ": " + quoted(value) + "; allowed: " + allowed);
+        errors_.push_back(name + ": " + in_quotes(value) + "; allowed: " + allowed);
       }
     }
     return true;  // else CLI11 would stop at the first mistake
