@@ -22,14 +22,14 @@ struct MaterialParameter {
   void (*set)(MaterialDesc& material, double value);
   double lowest, highest;  ///< decimal logarithms of the value over the linear density
 };
-constexpr MaterialParameter material_parameters[] = {
+constexpr MaterialParameter material_keys[] = {
     {"bending_stiffness", "N m^2", [](MaterialDesc& m, double value) { m.bending_stiffness = value; }, -5, 2},
     {"bending_damping", "N m^2 s", [](MaterialDesc& m, double value) { m.bending_damping = value; }, -7, 0},
     {"drag", "kg/(m s)", [](MaterialDesc& m, double value) { m.drag = value; }, -4, 2},
     {"torsional_stiffness", "N m^2", [](MaterialDesc& m, double value) { m.torsional_stiffness = value; }, -5, 2},
 };
 constexpr std::size_t bending_index = 0, drag_index = 2, torsion_index = 3;
-constexpr std::size_t length_index = std::size(material_parameters);
+constexpr std::size_t length_index = std::size(material_keys);
 constexpr std::size_t stiff_index = length_index + 1;
 constexpr std::size_t curvature_index = stiff_index + 2;
 
@@ -147,16 +147,30 @@ void check_starts(const std::vector<Recording>& recordings, const std::vector<Sm
   }
 }
 
-std::vector<Parameter> cable_parameters(const CableSettings& settings) {
+std::vector<Parameter> material_parameters(const std::string& key, double linear_density) {
   std::vector<Parameter> parameters;
-  const double density = std::log10(settings.linear_density);
-  for (const MaterialParameter& p : material_parameters)
-    parameters.push_back({"materials." + settings.name + "." + p.key, p.unit, true, density + p.lowest, density + p.highest,
-                          logarithmic_step, 0, -1});
+  const double density = std::log10(linear_density);
+  for (const MaterialParameter& p : material_keys)
+    parameters.push_back({key + "." + p.key, p.unit, true, density + p.lowest, density + p.highest, logarithmic_step, 0, -1});
   parameters[drag_index].likely = likely_drag;
   parameters[drag_index].expected = density + std::log10(guessed_drag);
   parameters[torsion_index].likely = likely_torsion;
   parameters[torsion_index].relative_to = bending_index;
+  for (Parameter& parameter : parameters) parameter.unresolved = unresolved_material;
+  return parameters;
+}
+
+void set_material(const std::vector<double>& values, std::size_t count, MaterialDesc& material) {
+  for (std::size_t i = 0; i < count; ++i) material_keys[i].set(material, std::pow(10, values[i]));
+}
+
+std::vector<double> first_material(double linear_density, double bending, double damping) {
+  return {std::log10(bending * linear_density), std::log10(damping * linear_density), std::log10(guessed_drag * linear_density),
+          std::log10(bending * linear_density)};
+}
+
+std::vector<Parameter> cable_parameters(const CableSettings& settings) {
+  std::vector<Parameter> parameters = material_parameters("materials." + settings.name, settings.linear_density);
   // A centre line starts along a smooth curve, which is not shorter than the cable.
   const auto [shortest, longest] =
       settings.centre_line ? likely_lengths(settings) : std::pair(settings.shortest, settings.longest);
@@ -170,7 +184,6 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
       parameters.push_back({"cables[0].rest_curvature[" + std::to_string(i) + "][" + std::to_string(axis) + "]", "1/m", false,
                             -highest_curvature, highest_curvature, curvature_step, likely_curvature, -1});
   }
-  for (std::size_t i = 0; i < length_index; ++i) parameters[i].unresolved = unresolved_material;
   parameters[length_index].unresolved = unresolved_length * settings.length;
   for (std::size_t i = stiff_index; i < curvature_index; ++i) parameters[i].unresolved = unresolved_stiff;
   for (std::size_t i = curvature_index; i < marker_index; ++i) parameters[i].has_common_width = true;
@@ -179,14 +192,9 @@ std::vector<Parameter> cable_parameters(const CableSettings& settings) {
 }
 
 std::vector<double> first_guess(const CableSettings& settings, double bending, double damping) {
-  const double density = settings.linear_density;
-  std::vector<double> values{std::log10(bending * density),
-                             std::log10(damping * density),
-                             std::log10(guessed_drag * density),
-                             std::log10(bending * density),
-                             std::clamp(settings.length, settings.shortest, settings.longest),
-                             expected_stiff(settings, 0),
-                             expected_stiff(settings, 1)};
+  std::vector<double> values = first_material(settings.linear_density, bending, damping);
+  values.insert(values.end(), {std::clamp(settings.length, settings.shortest, settings.longest), expected_stiff(settings, 0),
+                               expected_stiff(settings, 1)});
   values.resize(marker_index, 0.0);
   return values;
 }
@@ -225,7 +233,7 @@ SceneDesc cable_scene(const CableSettings& settings, const std::vector<double>& 
   material.name = settings.name;
   material.material.linear_density = settings.linear_density;
   material.material.radius = settings.radius;
-  for (std::size_t i = 0; i < length_index; ++i) material_parameters[i].set(material.material, std::pow(10, values[i]));
+  set_material(values, length_index, material.material);
   CableDesc& cable = scene.cables.emplace_back();
   cable.name = settings.name;
   cable.material = settings.name;

@@ -57,6 +57,13 @@ void check_starts(const std::vector<Recording>& recordings, const std::vector<Sm
 /// along the cable markers are from where they were measured.
 std::vector<Parameter> cable_parameters(const CableSettings& settings);
 
+/// The first of them: bending stiffness, bending damping, drag and torsional stiffness of a material. `key`: `materials.NAME`.
+std::vector<Parameter> material_parameters(const std::string& key, double linear_density);
+/// Takes some of these values, from the first one on.
+void set_material(const std::vector<double>& values, std::size_t count, MaterialDesc& material);
+/// Where their fits begin. `bending`, `damping`: as below.
+std::vector<double> first_material(double linear_density, double bending, double damping);
+
 /// Where to begin: a straight cable of the measured length. `bending`: EI over the linear density [N m^3 / kg], `damping`: of
 /// bending, likewise.
 std::vector<double> first_guess(const CableSettings& settings, double bending, double damping);

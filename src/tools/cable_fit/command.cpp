@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "cloud_command.h"
 #include "common/messages.h"
 #include "common/output_file.h"
 #include "common/program.h"
@@ -19,6 +20,7 @@
 #include "report.h"
 #include "scene/text.h"
 #include "smoothing.h"
+#include "written_files.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -27,16 +29,6 @@ constexpr const char* program = "cable_fit";
 
 int refuse(const std::vector<std::string>& errors) {
   return tools::refuse(program, errors, "nothing was fitted");
-}
-
-void check_output(const char* option, const std::string& path, const std::vector<std::string>& others,
-                  std::vector<std::string>& errors) {
-  if (path.empty()) return;
-  const std::string problem = tools::why_not_writable(path);
-  if (!problem.empty()) errors.push_back(std::string(option) + ": " + tools::cannot_write(path, problem));
-  for (const std::string& other : others)
-    if (!other.empty() && tools::is_same_file(path, other))
-      errors.push_back(std::string(option) + ": " + in_quotes(path) + " is " + in_quotes(other) + "; allowed: another file");
 }
 
 /// Why files cannot be made in a directory that may not be there yet.
@@ -151,13 +143,11 @@ std::string shell_text(const std::string& path) {
 }
 
 /// Which files were written, and how to look at the scene among them.
-std::string written_text(const Options& options) {
-  std::string files;
-  for (const std::string* path : {&options.output, &options.centre_line, &options.report, &options.predictions})
-    if (!path->empty() && !tools::is_standard_output(*path)) files += (files.empty() ? "" : ", ") + tools::path_text(*path);
-  if (files.empty()) return "";
-  const std::string text = "written: " + files;
-  if (tools::is_standard_output(options.output)) return text + "\n";
+std::string written_and_next(const Options& options) {
+  std::string text = written_text({&options.output, &options.centre_line, &options.report, &options.predictions});
+  if (text.empty()) return "";
+  if (tools::is_standard_output(options.output)) return text;
+  text.pop_back();
   return text + "; see it with: roslaunch verlet_cable replay.launch data:=" + shell_text(options.recordings.front()) +
          " scene:=" + shell_text(options.output) + "\n";
 }
@@ -171,6 +161,7 @@ int run(const std::vector<std::string>& arguments) {
     std::cout << options.help;
     return tools::exit_done;
   }
+  if (!options.clouds.empty()) return run_clouds(options, std::move(errors));
   std::vector<std::string> others = options.recordings;
   check_output("--output", options.output, others, errors);
   if (!options.harness.empty()) others.push_back(options.harness);
@@ -226,7 +217,7 @@ int run(const std::vector<std::string>& arguments) {
 
   const bool good = write_results(options, swapped, on_markers, also);
   progress.clear();
-  const std::string written = good ? written_text(options) : "";
+  const std::string written = good ? written_and_next(options) : "";
   const bool printed = tools::print_result(program, summary_text(swapped, on_markers, also) + written, has_data);
   return good && printed ? tools::exit_done : tools::exit_stopped;
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "verlet_cable/core/scene_desc.h"
 
@@ -74,9 +73,8 @@ std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, 
   return result;
 }
 
-std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<double>& values) {
-  std::vector<int> all(problem.recordings.size());
-  std::iota(all.begin(), all.end(), 0);
+std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<int>& all,
+                                              const std::vector<double>& values) {
   const Prior prior(problem.parameters, values);
   Eigen::MatrixXd information = prior.slopes.transpose() * prior.slopes;
   // The prior is one more thing known, as uncertain as it says.

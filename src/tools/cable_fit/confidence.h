@@ -27,7 +27,8 @@ void add_scatter(const Eigen::MatrixXd& slopes, const Eigen::VectorXd& differenc
 std::vector<Confidence> confidence_of(const std::vector<Parameter>& parameters, const std::vector<double>& values,
                                       const Eigen::MatrixXd& by_noise, const Eigen::MatrixXd& by_scatter, int recordings);
 
-/// By the scatter between parts of all recordings alone, with motions of the hands taken for exact.
-std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<double>& values);
+/// By the scatter between parts of all recordings, by their indices, alone, with motions of the hands taken for exact.
+std::vector<Confidence> confidence_by_scatter(const Problem& problem, const std::vector<int>& all,
+                                              const std::vector<double>& values);
 
 }  // namespace verlet_cable::cable_fit

@@ -19,8 +19,9 @@ Prediction predicted(const Problem& problem, const std::vector<double>& values, 
 }
 
 Eigen::VectorXd scaled_differences(const Problem& problem, const std::vector<double>& values, int which) {
-  const Prediction prediction = predicted(problem, values, which);
-  const std::vector<double> errors = coordinate_errors(prediction, problem.recordings[which]);
+  const std::vector<double> errors = problem.missed_by
+                                         ? problem.missed_by(problem.settings.segments, values, which)
+                                         : coordinate_errors(predicted(problem, values, which), problem.recordings[which]);
   Eigen::VectorXd differences(static_cast<Eigen::Index>(errors.size()));
   const double unit = scatter * std::sqrt(alike);
   for (std::size_t i = 0; i < errors.size(); ++i) differences[static_cast<Eigen::Index>(i)] = robust(errors[i]) / unit;
@@ -34,8 +35,10 @@ double robust(double difference) {
   return difference * std::sqrt(2 / (1 + std::sqrt(1 + ratio * ratio)));
 }
 
-std::size_t difference_count(const Recording& recording) {
-  return static_cast<std::size_t>(recording.rows() - given_rows) * recording.marker_count() * 3;
+std::size_t difference_count(const Problem& problem, int recording) {
+  if (problem.missed_by) return problem.missed_counts[recording];
+  const Recording& markers = problem.recordings[recording];
+  return static_cast<std::size_t>(markers.rows() - given_rows) * markers.marker_count() * 3;
 }
 
 Linearization linearize(const Problem& problem, const std::vector<int>& recordings, const std::vector<double>& values,

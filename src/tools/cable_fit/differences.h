@@ -18,6 +18,10 @@ struct Problem {
   std::function<void()> simulated;  ///< called whenever a recording was simulated, from one thread at a time
   /// Of a harness: what predicts a recording, by its index, with so many segments of its trunk; empty: it is one cable.
   std::function<Prediction(int segments, const std::vector<double>& values, int recording)> predict_harness = {};
+  /// Where no markers were recorded: by how much [m] a recording is missed, by its index, with so many segments; else empty.
+  /// Their numbers do not depend on the values.
+  std::function<std::vector<double>(int segments, const std::vector<double>& values, int recording)> missed_by = {};
+  std::vector<std::size_t> missed_counts = {};  ///< likewise: how many, a recording
 };
 
 /// Predicted minus measured coordinates of a recording in units of the scatter that is expected of them, so that their squares
@@ -34,7 +38,7 @@ constexpr double alike = 100;
 /// A difference [m], a large one tamed: half its square is the pseudo-Huber loss.
 double robust(double difference);
 
-std::size_t difference_count(const Recording& recording);
+std::size_t difference_count(const Problem& problem, int recording);
 
 /// Those of some recordings, in their order; slopes by differences, the simulations on all cores.
 Linearization linearize(const Problem& problem, const std::vector<int>& recordings, const std::vector<double>& values,

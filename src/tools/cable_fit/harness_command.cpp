@@ -9,6 +9,7 @@
 #include "common/progress_bar.h"
 #include "harness_report.h"
 #include "prediction_files.h"
+#include "written_files.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
@@ -23,13 +24,6 @@ void take_from_options(const Options& options, Harness& harness) {
               << options.assumed << "; weigh and measure the cables\n";
   if (trunk.linear_density == 0) trunk.linear_density = options.linear_density;
   if (trunk.radius == 0) trunk.radius = options.radius;
-}
-
-std::string written_text(const Options& options) {
-  std::string files;
-  for (const std::string* path : {&options.output, &options.report, &options.predictions})
-    if (!path->empty() && !tools::is_standard_output(*path)) files += (files.empty() ? "" : ", ") + tools::path_text(*path);
-  return files.empty() ? "" : "written: " + files + "\n";
 }
 
 }  // namespace
@@ -60,7 +54,9 @@ int run_harness(const Options& options, const std::vector<Recording>& recordings
   if (!options.predictions.empty()) write_prediction_files(options.predictions, recordings, fit.predictions, failures);
   const bool good = report_failures(failures);
   progress.clear();
-  const bool printed = tools::print_result(program, harness_text(problem, fit) + (good ? written_text(options) : ""), has_data);
+  const bool printed = tools::print_result(
+      program, harness_text(problem, fit) + (good ? written_text({&options.output, &options.report, &options.predictions}) : ""),
+      has_data);
   return good && printed ? tools::exit_done : tools::exit_stopped;
 }
 

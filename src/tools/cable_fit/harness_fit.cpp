@@ -119,7 +119,7 @@ HarnessFit fit_harness(const HarnessProblem& problem, int parts) {
   result.fitted = fit_harness(problem, all, parts > 0 ? result.folds.front().values : std::vector<double>());
   const Problem least_squares = least_squares_problem(problem, result.fitted.settings);
   result.parameters = least_squares.parameters;
-  result.confidence = confidence_by_scatter(least_squares, result.fitted.values);
+  result.confidence = confidence_by_scatter(least_squares, all, result.fitted.values);
   result.errors = errors_of(problem, predict_all(problem, std::vector<FittedHarness>(all.size(), result.fitted)));
   return result;
 }

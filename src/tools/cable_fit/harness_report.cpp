@@ -3,6 +3,7 @@
 #include <cstdio>
 
 #include "common/json.h"
+#include "parameter_report.h"
 #include "scene_yaml.h"
 #include "verlet_cable/core/number_text.h"
 
@@ -37,12 +38,6 @@ std::string junction_yaml(const JunctionDesc& junction) {
   return yaml + "]}\n";
 }
 
-std::string interval_text(const Parameter& parameter, double value, const Confidence& confidence) {
-  if (!confidence.told) return "not determined by these recordings";
-  return "(" + number("%.3g", scene_value(parameter, value - confidence.half_width)) + " to " +
-         number("%.3g", scene_value(parameter, value + confidence.half_width)) + ")";
-}
-
 Json error_json(const HarnessError& error) {
   return {{"mean", error.mean}, {"root_mean_square", error.root_mean_square}, {"largest", error.largest}};
 }
@@ -73,16 +68,8 @@ std::string harness_json(const HarnessProblem& problem, const HarnessFit& fit) {
   Json json{{"segments", settings.segments}, {"root_mean_square_error", root_mean_square(fit.errors)}};
   if (!fit.left_out_errors.empty()) json["cross_validated_root_mean_square_error"] = root_mean_square(fit.left_out_errors);
   json["parameters"] = Json::array();
-  for (std::size_t i = 0; i < fit.parameters.size(); ++i) {
-    const Parameter& parameter = fit.parameters[i];
-    const double value = fit.fitted.values[i], half_width = fit.confidence[i].half_width;
-    json["parameters"].push_back({{"key", parameter.key},
-                                  {"unit", parameter.unit},
-                                  {"value", scene_value(parameter, value)},
-                                  {"low", scene_value(parameter, value - half_width)},
-                                  {"high", scene_value(parameter, value + half_width)},
-                                  {"told_by_the_data", fit.confidence[i].told ? "yes" : "no"}});
-  }
+  for (std::size_t i = 0; i < fit.parameters.size(); ++i)
+    json["parameters"].push_back(parameter_json(fit.parameters[i], fit.fitted.values[i], fit.confidence[i]));
   json["cables"] = Json::array();
   for (std::size_t i = 0; i < settings.cables.size(); ++i)
     json["cables"].push_back({{"name", settings.harness.cables[i].name},
@@ -108,10 +95,7 @@ std::string harness_text(const HarnessProblem& problem, const HarnessFit& fit) {
       told += fit.confidence[i].told ? 1 : 0;
       continue;
     }
-    std::string key = parameter.key;
-    key.resize(std::max<std::size_t>(key.size(), 44), ' ');
-    text += key + " " + number("%10.4g", scene_value(parameter, fit.fitted.values[i])) + " " + parameter.unit + " " +
-            interval_text(parameter, fit.fitted.values[i], fit.confidence[i]) + "\n";
+    text += parameter_line(parameter, fit.fitted.values[i], fit.confidence[i]);
   }
   text += "rest_curvature: of " + std::to_string(curvatures) + " numbers along the cables " + std::to_string(told) +
           " are determined by these recordings; --report FILE lists them\n";

@@ -37,7 +37,7 @@ class Cost : public ceres::CostFunction {
  public:
   Cost(const Problem& problem, const std::vector<int>& training) : problem_(problem), training_(training) {
     mutable_parameter_block_sizes()->push_back(static_cast<int>(problem.parameters.size()));
-    for (const int i : training) count_ += static_cast<Eigen::Index>(difference_count(problem.recordings[i]));
+    for (const int i : training) count_ += static_cast<Eigen::Index>(difference_count(problem, i));
     set_num_residuals(static_cast<int>(count_ + problem.parameters.size()));
   }
 

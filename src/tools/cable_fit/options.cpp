@@ -19,11 +19,39 @@ constexpr int harness_segments = 24;
 constexpr const char* usage =
     "usage: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml [options]\n"
     "       cable_fit RECORDING.csv... --harness HARNESS.yaml --output SCENE.yaml [options]\n"
+    "       cable_fit --clouds CLOUDS.csv --scene FILMED.yaml [--motion MOTION.csv] --output SCENE.yaml [options]\n"
     "Fits a cable to recordings of it: CSV files t,x0,y0,z0,x1,... [s, m] of markers along the cable, of which the first two\n"
-    "and the last two are on the grippers that hold it.";
+    "and the last two are on the grippers that hold it. Or to clouds t,x,y,z [s, m] of points on its surface, in no order.";
 constexpr const char* footer = "exit status: 0 done, 2 a bad recording or option, 3 the fit had to stop";
 
+/// Options that only clouds have are wrong without them, and the others' with them.
+void check_clouds(const Options& options, std::vector<std::string>& errors) {
+  struct Other {
+    const char* option;
+    const std::string& given;
+  };
+  const bool with_clouds = !options.clouds.empty();
+  const Other of_clouds[] = {{"--scene", options.scene}, {"--motion", options.motion}, {"--cable", options.cable}};
+  const Other of_markers[] = {{"--name", options.name},
+                              {"--harness", options.harness},
+                              {"--centre-line", options.centre_line},
+                              {"--predictions", options.predictions}};
+  for (const Other& other : of_clouds)
+    if (!with_clouds && !other.given.empty())
+      errors.push_back(std::string(other.option) + ": " + in_quotes(other.given) + "; allowed: with --clouds only");
+  for (const Other& other : of_markers)
+    if (with_clouds && !other.given.empty())
+      errors.push_back(std::string(other.option) + ": " + in_quotes(other.given) + "; allowed: none with --clouds");
+  if (!with_clouds) return;
+  if (options.scene.empty()) errors.emplace_back("--scene: missing; allowed with --clouds: the scene that was filmed");
+  for (const std::string& path : options.recordings)
+    errors.push_back(in_quotes(path) + ": a recording of markers; allowed: none with --clouds");
+}
+
 void check_required(const Options& options, bool left_out, std::vector<std::string>& errors) {
+  if (options.output.empty()) errors.emplace_back("--output: missing; allowed: the name of a file");
+  check_clouds(options, errors);
+  if (!options.clouds.empty()) return;
   if (options.recordings.empty() && !left_out)
     errors.emplace_back(
         "no recordings; type: cable_fit RECORDING.csv... --name NAME --output SCENE.yaml; cable_fit --help lists the options");
@@ -40,7 +68,6 @@ void check_required(const Options& options, bool left_out, std::vector<std::stri
   } else if (!is_name(options.name)) {
     errors.push_back("--name: " + in_quotes(options.name) + "; allowed: " + name_words);
   }
-  if (options.output.empty()) errors.emplace_back("--output: missing; allowed: the name of a file");
 }
 
 /// Takes what was given; what is 0 was not: the option with its default.
@@ -62,6 +89,17 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
                 "but for the first one, `from`, the marker at which it leaves another; and `held`, the markers on what\n"
                 "holds it",
                 options.harness, file);
+  line.add_text("--clouds", "CSV",
+                "points t,x,y,z of the cable's surface as a depth camera saw them, instead of recordings of markers; see\n"
+                "clouds_to_csv",
+                options.clouds, file);
+  line.add_text("--scene", "YAML",
+                "with --clouds: the scene that was filmed, with what holds the cable, its linear density and radius, and about\n"
+                "its length; without `initial` the cable hangs at rest at first",
+                options.scene, file);
+  line.add_text("--motion", "CSV", "with --clouds: how the scene's frames moved, as for cable_sim", options.motion, file);
+  line.add_text("--cable", "NAME", "with --clouds: the cable that is looked for; not needed if there is only one", options.cable,
+                name_words);
   int segments = 0, parts = 0;
   line.add_integer("--segments", "N", "of the cable, default 40; of a harness' first cable, default 24", segments,
                    segments_range);
@@ -89,6 +127,8 @@ Options parse_options(const std::vector<std::string>& arguments, std::vector<std
   options.help = line.help();
   options.assumed = use_or_assume(linear_density, "--linear-density", "kg/m", options.linear_density);
   const std::string radius_text = use_or_assume(radius, "--radius", "m", options.radius);
+  if (!options.clouds.empty() && (linear_density > 0 || radius > 0))
+    errors.emplace_back("--linear-density, --radius: given; allowed: none with --clouds, the scene has both");
   if (!radius_text.empty()) options.assumed += (options.assumed.empty() ? "" : ", ") + radius_text;
   if (options.help.empty()) check_required(options, line.left_out(), errors);
   return options;

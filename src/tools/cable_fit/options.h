@@ -16,6 +16,10 @@ struct Options {
   std::string centre_line;              ///< path of the scene of the centre line, empty: it is not looked for
   std::string predictions;              ///< directory, empty: none
   std::string harness;                  ///< path of its description, empty: the recordings are of a single cable
+  std::string clouds;                   ///< path of points of a surface, empty: the recordings are of markers
+  std::string scene;                    ///< path, with clouds: what was filmed
+  std::string motion;                   ///< path, with clouds, empty: nothing moves
+  std::string cable;                    ///< with clouds: the one that is looked for, empty: the only one
   int parts = 2;                        ///< in which recordings of a harness are left out
   int segments = 40;
   double linear_density = 0.1;  ///< [kg/m]

@@ -23,14 +23,4 @@ void write_prediction_files(const std::string& directory, const std::vector<Reco
         tools::write_file(prediction_path(directory, recordings[i].path), prediction_csv(recordings[i], predictions[i])));
 }
 
-bool report_failures(const std::vector<std::string>& failures) {
-  bool good = true;
-  for (const std::string& failure : failures) {
-    if (failure.empty()) continue;
-    std::cerr << "cable_fit: stopped: " << failure << "\n";
-    good = false;
-  }
-  return good;
-}
-
 }  // namespace verlet_cable::cable_fit

@@ -15,7 +15,4 @@ std::string prediction_path(const std::string& directory, const std::string& rec
 void write_prediction_files(const std::string& directory, const std::vector<Recording>& recordings,
                             const std::vector<Prediction>& predictions, std::vector<std::string>& failures);
 
-/// Says on standard error what could not be written; false if there was anything. Entries may be empty.
-bool report_failures(const std::vector<std::string>& failures);
-
 }  // namespace verlet_cable::cable_fit

@@ -5,21 +5,13 @@
 #include <cstdio>
 
 #include "common/json.h"
+#include "parameter_report.h"
 #include "verlet_cable/core/number_text.h"
 
 namespace verlet_cable::cable_fit {
 namespace {
 
 using tools::Json;
-
-/// The interval of a parameter, as values of the scene's key.
-struct Interval {
-  double low, high;
-};
-
-Interval interval(const Parameter& parameter, double value, const Confidence& confidence) {
-  return {scene_value(parameter, value - confidence.half_width), scene_value(parameter, value + confidence.half_width)};
-}
 
 Json error_json(const PredictionError& error) {
   return {{"mean", error.mean}, {"largest", error.largest}, {"last", error.last}};
@@ -29,15 +21,8 @@ Json parameters_json(const Fit& fit) {
   const auto& [problem, result] = fit;
   Json json = Json::array();
   for (std::size_t i = 0; i < problem.parameters.size(); ++i) {
-    const Parameter& parameter = problem.parameters[i];
-    const Interval range = interval(parameter, result.values[i], result.confidence[i]);
-    json.push_back({{"key", parameter.key},
-                    {"unit", parameter.unit},
-                    {"value", scene_value(parameter, result.values[i])},
-                    {"value_with_exact_inputs", scene_value(parameter, result.with_exact_inputs[i])},
-                    {"low", range.low},
-                    {"high", range.high},
-                    {"told_by_the_data", result.confidence[i].told ? "yes" : "no"}});
+    Json& of_parameter = json.emplace_back(parameter_json(problem.parameters[i], result.values[i], result.confidence[i]));
+    of_parameter["value_with_exact_inputs"] = scene_value(problem.parameters[i], result.with_exact_inputs[i]);
   }
   return json;
 }
@@ -109,10 +94,7 @@ std::string parameter_lines(const Fit& fit) {
         continue;
       }
     }
-    text += line("%-44s %10.4g %-9s ", parameter.key.c_str(), scene_value(parameter, result.values[i]), parameter.unit.c_str());
-    // The interval of what is not told may be without end, and says no more.
-    const Interval range = interval(parameter, result.values[i], result.confidence[i]);
-    text += result.confidence[i].told ? line("(%.3g to %.3g)\n", range.low, range.high) : "not determined by these recordings\n";
+    text += parameter_line(parameter, result.values[i], result.confidence[i]);
   }
   if (untold > 0)
     text += line(

@@ -37,12 +37,17 @@ std::string materials_yaml(const SceneDesc& scene) {
   return yaml;
 }
 
-std::string cable_yaml(const CableDesc& cable) {
+std::string plain_cable_yaml(const CableDesc& cable) {
   std::string yaml;
   append("  - ", "name", cable.name, yaml);
   append("    ", "length", number_text(cable.length), yaml);
   append("    ", "segments", std::to_string(cable.segments), yaml);
   append("    ", "material", cable.material, yaml);
+  return yaml;
+}
+
+std::string cable_yaml(const CableDesc& cable) {
+  std::string yaml = plain_cable_yaml(cable);
   append("    ", "stiff_ends", "[" + number_text(cable.stiff_ends[0]) + ", " + number_text(cable.stiff_ends[1]) + "]", yaml);
   yaml += "    rest_curvature:\n";
   for (const auto& curvature : cable.rest_curvature.profile)
