@@ -10,11 +10,11 @@ import rosbag
 import rospkg
 import rospy
 import tf2_py
-from geometry_msgs.msg import Quaternion, Transform, TransformStamped, Vector3
 
 from verlet_cable.sim import Scene, World
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+from bag_clouds import as_its_class  # noqa: E402
 from cloud_tracker import CloudTracker, distances  # noqa: E402
 
 TOPICS = ['/tf', '/tf_static', '/camera/camera_info', '/camera/depth/image_raw', '/camera/truth']
@@ -30,13 +30,6 @@ def pose_of(transform):
                          [2 * (x * y + z * w), 1 - 2 * (x * x + z * z), 2 * (y * z - x * w)],
                          [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])
     return rotation, np.array([transform.translation.x, transform.translation.y, transform.translation.z])
-
-
-def as_its_class(message):
-    """A bag has classes of its own, which tf warns of."""
-    shift, turn = message.transform.translation, message.transform.rotation
-    return TransformStamped(message.header, message.child_frame_id,
-                            Transform(Vector3(shift.x, shift.y, shift.z), Quaternion(turn.x, turn.y, turn.z, turn.w)))
 
 
 def cloud_of(depth, info):

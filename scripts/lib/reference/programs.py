@@ -6,7 +6,7 @@ import xml.etree.ElementTree
 from reference.markdown import anchor, fence, generated, table
 
 BUILT = ['cable_sim', 'cable_fit']
-INSTALLED = ['cable_coco', 'cable_convert', 'cable_sweep', 'record_coco', 'record_to_csv', 'play_motion.py']
+INSTALLED = ['cable_coco', 'cable_convert', 'cable_sweep', 'record_coco', 'record_to_csv', 'clouds_to_csv', 'play_motion.py']
 OF_CHECKOUT = ['demo', 'test', 'bench', 'audit', 'sweep', 'pictures', 'docs', 'real', 'fuzz', 'sanitize', 'soak']
 
 
