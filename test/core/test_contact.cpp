@@ -258,6 +258,70 @@ TEST(Contact, CapstanHoldsAndSlipsAsEulerSays) {
     }
 }
 
+/// A rope of 3 m that hangs from a drum of 3 cm with a load of 5 N, as it is wound up at half a turn a second, turn upon turn.
+class WoundRope {
+ public:
+  explicit WoundRope(int segments) {
+    SceneDesc scene = scenes::one_cable(segments, 3);
+    MaterialDesc& material = scene.materials[0].material;
+    material.linear_density = 0.04;
+    material.radius = 0.004;
+    material.bending_stiffness = 1e-3;
+    material.bending_damping = 2e-5;
+    material.axial_stiffness = 2e4;
+    material.axial_damping = 100;
+    material.drag = 0.01;
+    CableDesc& cable = scene.cables[0];
+    cable.initial.type = InitialShapeDesc::Type::points;
+    cable.initial.points = {{0.034, 0, 0}, {0.034, 0, -3}};
+    cable.point_masses.push_back({{PlaceDesc::At::end, 0}, 5 / 9.81});
+    AttachmentDesc clamp = scenes::attachment("clamp", PlaceDesc::At::start, {0.034, 0, 0}, "axle");
+    clamp.type = AttachmentType::clamp;
+    clamp.rotation = {0, 0.5 * pi, 0};
+    clamp.initial_pose = InitialPose{};
+    cable.attachments = {clamp};
+    add_obstacle("drum", ShapeType::cylinder, {0, 0, 0, 0.5 * pi, 0, 0}, scene);
+    scene.obstacles[0].radius = 0.03;
+    scene.obstacles[0].frame = "drum";
+    scene.obstacles[0].initial_pose = InitialPose{};
+    scene.obstacles[0].friction = 0.3;
+    scene.contact = ContactDesc();
+    scene.contact->friction = 0.3;
+    inputs_ = initial_frames(scene);
+    world_ = World(scene, inputs_);
+  }
+  void wind(double duration) {
+    for (const double end = world_.time() + duration - 1e-9; world_.time() < end;) {
+      const double time = world_.time() + world_.time_step();
+      const double angle = pi * (time < 0.4 ? time * time / 0.8 : time - 0.2);
+      for (std::size_t frame : {1, 2})
+        inputs_[frame].pose.orientation = Quaternion(std::cos(0.5 * angle), 0, -std::sin(0.5 * angle), 0);
+      EXPECT_EQ(world_.step(inputs_).status, StepResult::Status::ok);
+    }
+  }
+  const std::vector<double>& tension() const { return world_.cables()[0].state.tension; }
+
+ private:
+  BoundaryInputs inputs_{1};
+  World world_{SceneDesc(), BoundaryInputs(1)};
+};
+
+TEST(Contact, ARopeOnADrumKeepsTheTensionWithWhichItWasWound) {
+  constexpr double weight = 5 + 3 * 0.04 * 9.81;
+  WoundRope rope(400);
+  rope.wind(1.1);
+  for (int segment = 0; segment < 12; ++segment) EXPECT_NEAR(rope.tension()[segment], weight, 0.1 * weight) << segment;
+}
+
+TEST(Contact, LayersOnADrumDoNotTightenTheRopeUnderThem) {
+  // Segments of half the drum's radius: with 800 of them it is 8 N at most.
+  WoundRope rope(200);
+  for (int second = 1; second <= 8; ++second) {
+    rope.wind(1);
+    EXPECT_LT(*std::max_element(rope.tension().begin(), rope.tension().end()), 8) << second;
+  }
+}
+
 TEST(Contact, FrictionFollowsTheTensionWithinAnIteration) {
   const double friction = 0.5, angle = 3 * pi;
   SceneDesc scene = capstan(friction, angle);

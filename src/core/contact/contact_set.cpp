@@ -6,6 +6,7 @@
 #include "chain/point_motion.h"
 #include "contact/new_touch.h"
 #include "contact/pressed_lengths.h"
+#include "contact/smooth_cable.h"
 #include "contact/touched_place.h"
 #include "geometry/segment_geometry.h"
 #include "verlet_cable/core/cable_materials.h"
@@ -130,11 +131,11 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const std::v
   const Vector3 normal = distance > 0 ? Vector3(closest.between / distance) : along_a.unitOrthogonal();
   const CablePoint first{pair.first.cable, i, closest.first}, second{pair.second.cable, j, closest.second};
   const Vector3 velocity = on_centre_line(first, a.state.velocities) - on_centre_line(second, b.state.velocities);
+  const double gap = distance - surface + bulge_along(normal, a.state, i, closest.first, first_radius) -
+                     bulge_along(normal, b.state, j, closest.second, second_radius);
   const std::uint64_t key = pair_key | i, other_key = key_of(members[places_[pair.second.cable]].id, j);
-  if (!reach.closes(distance - surface, normal, velocity, radius) &&
-      !bore(*members[places_[pair.first.cable]].cache, key, other_key))
-    return;
-  near_.push_back({first, second, normal, distance - surface, radius, key, other_key});
+  if (!reach.closes(gap, normal, velocity, radius) && !bore(*members[places_[pair.first.cable]].cache, key, other_key)) return;
+  near_.push_back({first, second, normal, gap, radius, key, other_key});
 }
 
 void ContactSet::add_pair(const std::vector<SimulatedCable>& cables, const std::vector<ContactMember>& members,

@@ -9,6 +9,7 @@
 #include "chain/point_motion.h"
 #include "contact/friction_bound.h"
 #include "contact/new_touch.h"
+#include "contact/smooth_cable.h"
 #include "geometry/segment_geometry.h"
 
 namespace verlet_cable {
@@ -30,6 +31,20 @@ Vector3 in_shape(const MovingObstacle& moving, const Vector3& place) {
   return moving.start.orientation.conjugate() * (place - moving.start.position);
 }
 
+/// Which part of an obstacle's turn a cable turns with it, where it touches beside its centre line. `joined`: how nodes from
+/// `first` on would move if they were joined to it. Where a cable comes to lie on a drum, the segment that lies on it turns with
+/// it, and the next one does not yet: that is not touched. What turns by half as much or more is on its way to lie on it, and
+/// does not slide: else each node that a stiff rope lays down would drag the rope by all the friction it has.
+double turned_along(const CablePoint& beside, const std::array<SurfaceMotion, 3>& joined, int first, const CableState& state) {
+  double most = 0;
+  for (int segment = first; segment <= beside.segment; ++segment) {
+    const double of_obstacle = beside.across.dot(joined[segment + 1 - first].end_velocity - joined[segment - first].end_velocity);
+    if (of_obstacle != 0)
+      most = std::max(most, beside.across.dot(state.velocities[segment + 1] - state.velocities[segment]) / of_obstacle);
+  }
+  return std::min(2 * most, 1.0);
+}
+
 /// Friction of a cable acts on its centre line, which obstacles carry along as if joined to it: that is in `motion`. One that
 /// turns slides besides, at the point beside that line, under a cable that does not turn with it: adds that, along the surface.
 void turn_under(const MovingObstacle& moving, const CableState& state, const CablePoint& beside, SurfaceMotion& motion) {
@@ -38,27 +53,14 @@ void turn_under(const MovingObstacle& moving, const CableState& state, const Cab
   std::array<SurfaceMotion, 3> nodes;
   for (int i = first; i <= beside.segment + 1; ++i)
     nodes[i - first] = surface_motion(moving, in_shape(moving, state.positions[i]));
-  const double rate = carried_along(beside, [&](int i) -> const Vector3& { return nodes[i - first].end_velocity; });
-  if (rate == 0) return;
-  const double own_rate = carried_along(beside, [&](int i) -> const Vector3& { return state.velocities[i]; });
-  const Vector3 slips = (1 - std::clamp(own_rate / rate, 0.0, 1.0)) * beside.along;
+  const Vector3 slips = (1 - turned_along(beside, nodes, first, state)) * beside.along;
   motion.displacement += carried_along(beside, [&](int i) -> const Vector3& { return nodes[i - first].displacement; }) * slips;
-  motion.end_velocity += rate * slips;
+  motion.end_velocity += carried_along(beside, [&](int i) -> const Vector3& { return nodes[i - first].end_velocity; }) * slips;
 }
 
 /// A node as a point of a segment.
 CablePoint node_point(int cable, int node, int segments) {
   return node < segments ? CablePoint{cable, node, 0.0} : CablePoint{cable, node - 1, 1.0};
-}
-
-/// [m] By how much a smooth cable through the nodes of a segment bulges out along a normal: twice the arc's height, so that nodes
-/// bear what lies around a round obstacle.
-double bulge_of(const CableState& state, int segment, const Vector3& normal) {
-  const int before = std::max(segment - 1, 0), after = std::min(segment + 1, state.segments() - 1);
-  const double turned =
-      after > before ? (segment_direction(state, before) - segment_direction(state, after)).dot(normal) / (after - before) : 0;
-  const double length = (state.positions[segment + 1] - state.positions[segment]).norm();
-  return 0.25 * length * turned;
 }
 
 bool apart(const Vector3& least, const Vector3& largest, const Aabb& box, double reach) {
@@ -205,8 +207,9 @@ void ObstacleTouches::add_segment(int segment, double length, double far, std::v
     part = part_over_face(shape, local_[i], local_[i + 1], deepest, narrowest_face * radius);
   const bool begins = part && part->begin.fraction > 0 && part->begin.surface.distance > 0;
   const bool ends = part && part->end.fraction < 1 && part->end.surface.distance > 0;
-  const double arc = bulge_of(cable_->state, i, orientation_ * deepest.surface.normal);
-  const double bulge = std::clamp(arc, least * radius, largest_bulge * radius);
+  // Twice the arc's height, so that nodes bear what lies around a round obstacle.
+  const double arc = 2 * arc_height(cable_->state, i).dot(orientation_ * deepest.surface.normal);
+  const double bulge = std::clamp(arc, least * radius, (has_edges_ ? largest_bulge : largest_arc) * radius);
   // The more it is bent over an edge, deeper there than where the face ends or bulging out, the more it is pushed out where
   // it is deepest instead, by the edge.
   double flat = 0;

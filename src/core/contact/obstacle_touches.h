@@ -22,9 +22,6 @@ struct ContactMember {
   ContactCache* cache = nullptr;
 };
 
-/// [radii] By no more than this a smooth cable is taken to bulge out between two nodes.
-constexpr double largest_bulge = 0.08;
-
 /// Whether a point of a cable is close to where an attachment joins the cable to the obstacle's own frame.
 bool is_anchored(const CableState& state, const KinematicTargets& targets, const CablePoint& point, const Obstacle& obstacle,
                  const std::vector<Attachment>& attachments);

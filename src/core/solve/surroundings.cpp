@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "contact/obstacle_touches.h"
+#include "contact/smooth_cable.h"
 #include "verlet_cable/core/cable_materials.h"
 
 namespace verlet_cable {

@@ -15,7 +15,10 @@ constexpr double cloud_times[] = {0.01, 0.1};                             // [s]
 constexpr Ending for_clouds{8, 4, 1e-3, 0};
 /// Bending stiffness, bending damping and drag; then the length. Twist leaves hardly a trace in points of a surface.
 constexpr std::size_t cloud_material_count = 3;
-constexpr double cloud_length_step = 5e-4;        // of it
+constexpr double cloud_length_step = 5e-4;  // of it
+constexpr std::size_t first_lossy = 1;
+/// [decades] Noise takes points to the other side of a thin cable's axis, and what swings looks a little less damped.
+constexpr double unresolved_loss = 0.02;
 constexpr double unresolved_cloud_length = 5e-4;  // of it, as a cable stretches a little
 /// The part of the scene's length by which the cable's may differ.
 constexpr double length_range = 0.2;
@@ -42,6 +45,7 @@ std::vector<Parameter> cloud_parameters(const CloudProblem& problem) {
   const CableDesc& cable = problem.scene.cables[problem.cable];
   std::vector<Parameter> parameters = material_parameters("materials." + cable.material, linear_density_of(problem));
   parameters.resize(cloud_material_count);
+  for (std::size_t i = first_lossy; i < cloud_material_count; ++i) parameters[i].unresolved = unresolved_loss;
   parameters.push_back({"cables[" + std::to_string(problem.cable) + "].length", "m", false, (1 - length_range) * cable.length,
                         (1 + length_range) * cable.length, cloud_length_step * cable.length});
   parameters.back().unresolved = unresolved_cloud_length * cable.length;
