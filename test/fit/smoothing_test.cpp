@@ -39,6 +39,17 @@ TEST(Smoothing, FindsTheNoiseAndTakesMostOfItAway) {
   EXPECT_LT(root_mean_square(smooth.recording, still), 0.3 * root_mean_square(noisy, still));
 }
 
+TEST(Smoothing, TakesAnyNumberOfMarkersOfAHarnessThatAreHeld) {
+  for (const int count : {1, 2, 3, 4, 5}) {
+    Recording still = swinging_markers(0), noisy = swinging_markers(0.002);
+    for (Recording* recording : {&still, &noisy})
+      for (std::vector<Vector3>& markers : recording->markers) markers.resize(count);
+    const Smoothed smooth = smoothed(noisy);
+    EXPECT_NEAR(smooth.noise, 0.002, 2e-4) << count;
+    EXPECT_LT(root_mean_square(smooth.recording, still), 0.3 * root_mean_square(noisy, still)) << count;
+  }
+}
+
 TEST(Smoothing, LeavesWhatHasNoNoise) {
   const Recording still = swinging_markers(0);
   const Smoothed smooth = smoothed(still);

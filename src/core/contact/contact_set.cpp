@@ -70,7 +70,7 @@ void ContactSet::find(const std::vector<SimulatedCable>& cables, const std::vect
     shortest_ = std::min(shortest_, *std::min_element(lengths.begin(), lengths.end()));
   }
   find_joined(attachments, members);
-  grid_.update(cables, island, rules.pairs, reach.at(0, radius) + radius, h, pairs);
+  grid_.update(cables, island, rules.pairs, reach.at(0, radius) + (1 + 2 * largest_arc) * radius, h, pairs);
   find_pairs(cables, members, pairs, radius, reach);
 }
 
@@ -105,7 +105,8 @@ void ContactSet::find_pairs(const std::vector<SimulatedCable>& cables, const std
     for (; pair != found.pairs.end() && is_of(segment, *pair); ++pair) {
       const double speed = found.speeds[pair->first_node] + found.speeds[pair->second_node];
       const double moved = found.moved[pair->first_node] + found.moved[pair->second_node];
-      if (pair->distance - moved > (2 * thickest + reach.at(speed, thickest)) * (1 + distance_rounding)) continue;
+      const double far = 2 * (1 + largest_arc) * thickest + reach.at(speed, thickest);
+      if (pair->distance - moved > far * (1 + distance_rounding)) continue;
       if (can_touch(cables, joined_, *pair)) look_at(cables, members, *pair, speed, reach);
     }
     const SimulatedCable& cable = cables[segment.cable];
@@ -122,7 +123,7 @@ void ContactSet::look_at(const std::vector<SimulatedCable>& cables, const std::v
   const int i = pair.first.segment, j = pair.second.segment;
   const double first_radius = CableMaterials(a)[i].radius, second_radius = CableMaterials(b)[j].radius;
   const double radius = std::min(first_radius, second_radius), surface = first_radius + second_radius;
-  const double far = surface + reach.at(speed, radius);
+  const double far = (1 + largest_arc) * surface + reach.at(speed, radius);
   const Vector3 &a0 = a.state.positions[i], &b0 = b.state.positions[j];
   const Vector3 along_a = a.state.positions[i + 1] - a0, along_b = b.state.positions[j + 1] - b0;
   const ClosestPoints closest = closest_points(a0, along_a, b0, along_b);

@@ -1,8 +1,8 @@
 #include "smoothing.h"
 
 #include <Eigen/SparseCholesky>
+#include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -79,14 +79,14 @@ double degrees_of_freedom(Eigen::Index rows, double strength) {
 }
 
 Smoothed smoothed(const Recording& recording) {
-  const int last = recording.marker_count() - 1;
-  const std::vector<int> on_hands{0, 1, last - 1, last};
-  std::vector<int> between(last - 3);
-  std::iota(between.begin(), between.end(), 2);
+  const int count = recording.marker_count();
+  std::vector<int> on_hands, between;
+  for (int marker = 0; marker < count; ++marker)
+    (std::min(marker, count - 1 - marker) < 2 ? on_hands : between).push_back(marker);
   Smoothed result{recording, 0, 0};
   const auto [variance, strength] = smooth_alike(on_hands, result.recording);
   const double of_others = between.empty() ? variance : smooth_alike(between, result.recording).first;
-  const double share = 4.0 / recording.marker_count();
+  const double share = static_cast<double>(on_hands.size()) / count;
   result.noise = std::sqrt(share * variance + (1 - share) * of_others);
   result.strength = strength;
   return result;
