@@ -127,7 +127,8 @@ bool ContactSolver::crosses(const std::vector<Participant>& participants, const 
 /// round.
 bool ContactSolver::iterate(std::vector<Participant>& participants, std::vector<Touch>& touches) {
   const double h = participants.empty() ? bodies_->substep() : participants.front().substep.h;
-  const bool passes_momentum = std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0; });
+  const bool passes_momentum =
+      std::any_of(touches.begin(), touches.end(), [](const Touch& touch) { return touch.body >= 0 || joins_cables(touch); });
   const double tolerance = velocity_tolerance * std::min(h, longest_tolerated);
   double tolerated = infinity;          // [m] of a node
   double negligible_energy = infinity;  // [J] moves no node by more than that

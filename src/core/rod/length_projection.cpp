@@ -16,7 +16,7 @@ constexpr int projection_iterations = 100;
 constexpr double length_tolerance = 1e-12;  // relative, of squares
 constexpr double rounding_of_position =
     8 * std::numeric_limits<double>::epsilon();  // of places, likewise: a long cable's is more
-constexpr double straight = 1 - 1e-7;            // of a span's length
+constexpr double straight_span = 1 - 1e-7;       // of a span's length
 constexpr double regularisation = 1e-12;         // as length_rate_regularisation, of what is solved again and again
 
 /// J M^-1 J^T for the segments' lengths, and its solution for given changes of ½ s². Segments of length 0 in `lengths`, one a
@@ -89,7 +89,7 @@ void straighten_taut_spans(const CableMaterials& materials, const std::vector<He
     if (materials.any_elastic_between(first, last)) continue;
     const Vector3 span = held[k + 1].position - held[k].position;
     const double rest_length = state.length(first, last);
-    if (span.norm() < straight * rest_length) continue;
+    if (span.norm() < straight_span * rest_length) continue;
     double along = 0;
     for (int i = first; i + 1 < last; ++i) {
       along += state.rest_lengths[i];

@@ -30,7 +30,7 @@ constexpr double longest_tolerated = 1e-3;
 /// Of the kinetic energy and what lifts all by a segment, more that is missing in a step is told.
 constexpr double accountable_part = 1e-4;
 /// So much less an iterate may lack that ends its substep.
-constexpr double untold_part = 0.2;
+constexpr double untold_part = 0.5;
 /// Corrections that shrink by less an iteration are rounding.
 constexpr double rounding_ratio = 0.5;
 /// A larger correction, in segment lengths, leads to solutions that have nothing to do with the motion: halve the step.
