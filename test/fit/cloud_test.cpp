@@ -3,8 +3,8 @@
 #include <cmath>
 #include <random>
 
-#include "../scene/cable_sim_fixture.h"
 #include "cable_fit/cloud_fit.h"
+#include "cable_fit_fixture.h"
 #include "scene/frame_source.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/core/world.h"
@@ -126,15 +126,8 @@ TEST(Clouds, distancesAreFromTheSurface) {
 }
 
 /// cable_fit with clouds, in a directory of its own.
-class CloudProgram : public CableSim {
+class CloudProgram : public CableFitProgram {
  protected:
-  int fit(const std::string& arguments) {
-    const std::string command = std::string(CABLE_FIT_PROGRAM) + " " + arguments + " > " + path("out") + " 2> " + path("err");
-    const int status = std::system(command.c_str());
-    out = content(path("out"));
-    err = content(path("err"));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   std::string write_clouds(const Clouds& clouds) {
     std::string text = "t,x,y,z\n";
     for (std::size_t i = 0; i < clouds.times.size(); ++i)

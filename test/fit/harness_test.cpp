@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "../scene/cable_sim_fixture.h"
 #include "cable_fit/harness_fit.h"
 #include "cable_fit/report.h"
+#include "cable_fit_fixture.h"
 #include "synthetic_harness.h"
 #include "verlet_cable/scene/scene_reader.h"
 
@@ -113,15 +112,8 @@ TEST(HarnessFit, EveryRecordingIsLeftOutOnce) {
   EXPECT_EQ(left_out_parts(2, 5).size(), 2u);
 }
 
-class HarnessProgram : public CableSim {
+class HarnessProgram : public CableFitProgram {
  protected:
-  int fit(const std::string& arguments) {
-    const std::string command = std::string(CABLE_FIT_PROGRAM) + " " + arguments + " > " + path("out") + " 2> " + path("err");
-    const int status = std::system(command.c_str());
-    out = content(path("out"));
-    err = content(path("err"));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   std::string take(int number) {
     const Recording recording = synthetic_harness_recording(number, 0.4);
     return write("take" + std::to_string(number) + ".csv", prediction_csv(recording, {true, recording.markers}));

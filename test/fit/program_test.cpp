@@ -1,10 +1,9 @@
 #include <sys/stat.h>
-#include <sys/wait.h>
 
 #include <cmath>
 
-#include "../scene/cable_sim_fixture.h"
 #include "cable_fit/report.h"
+#include "cable_fit_fixture.h"
 #include "synthetic.h"
 #include "verlet_cable/core/number_text.h"
 #include "verlet_cable/scene/scene_reader.h"
@@ -13,16 +12,8 @@ namespace verlet_cable::cable_fit {
 namespace {
 
 /// Both programs, in a directory of its own.
-class CableFit : public CableSim {
+class CableFit : public CableFitProgram {
  protected:
-  /// `before`: commands of the same shell.
-  int fit(const std::string& arguments, const std::string& before = "") {
-    const std::string command = before + CABLE_FIT_PROGRAM + " " + arguments + " > " + path("out") + " 2> " + path("err");
-    const int status = std::system(command.c_str());
-    out = content(path("out"));
-    err = content(path("err"));
-    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  }
   std::string write_recording(const std::string& name, const Recording& recording) {
     return write(name, prediction_csv(recording, {true, recording.markers}));
   }
