@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <mutex>
 #include <random>
 #include <set>
@@ -33,6 +34,7 @@ constexpr int pairs = 4;  ///< of samples
 /// Of a parameter's information: where so much of it is noise of slopes, it is not determined. In recordings of a known rod it is
 /// at most an eighth where hands swing, and a half of that on bending damping where they move slowly.
 constexpr double most_noise = 0.3;
+constexpr double most_taken = 0.95;
 /// Slopes by the inputs are found anew at every so manieth step.
 constexpr int steps_with_slopes = 2;
 /// A width that many parameters have in common is this part of what is likely at least.
@@ -84,6 +86,21 @@ Eigen::VectorXd drawn(Eigen::Index count, std::mt19937_64& random) {
   Eigen::VectorXd numbers(count);
   for (double& number : numbers) number = normal(random);
   return numbers;
+}
+
+/// Of information, less its noise: which is itself uncertain, and takes no direction more than `most_taken` of what it has, so
+/// that intervals only become wider.
+Eigen::MatrixXd inverse_without(const Eigen::MatrixXd& noise, const Eigen::MatrixXd& information) {
+  const Eigen::VectorXd scale = scale_of(information);
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> whole(scale.asDiagonal() * information * scale.asDiagonal());
+  const Eigen::VectorXd& told = whole.eigenvalues();
+  const double least = told.size() * std::numeric_limits<double>::epsilon() * told.maxCoeff();
+  const auto size = [&](double value) { return value > least ? 1 / std::sqrt(value) : 0.0; };
+  const Eigen::MatrixXd whitened = scale.asDiagonal() * whole.eigenvectors() * told.unaryExpr(size).asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> taken(whitened.transpose() * noise * whitened);
+  const Eigen::VectorXd left = (1 - taken.eigenvalues().array()).max(1 - most_taken).min(1.0);
+  const Eigen::MatrixXd directions = whitened * taken.eigenvectors();
+  return directions * left.cwiseInverse().asDiagonal() * directions.transpose();
 }
 
 /// The estimate, as it is improved step by step.
@@ -474,9 +491,7 @@ class Search {
     std::vector<Eigen::Index> noisy;
     for (Eigen::Index k = 0; k < parameters(); ++k)
       if (noise_of_slopes_(k, k) > most_noise * information(k, k)) noisy.push_back(k);
-    information -= noise_of_slopes_;
-    const Eigen::VectorXd scale = scale_of(information);
-    const Eigen::MatrixXd inverse = scale.asDiagonal() * inverse_scaled(information, scale) * scale.asDiagonal();
+    const Eigen::MatrixXd inverse = inverse_without(noise_of_slopes_, information);
     std::vector<Confidence> result = confidence_of(with_unresolved_noise(), values_, inverse, inverse * scatter * inverse, count);
     for (const Eigen::Index k : noisy) result[k] = {infinity, false};
     return result;
