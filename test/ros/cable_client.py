@@ -18,10 +18,10 @@ PATIENCE = 5.0  # [s] of wall time, far more than anything here takes on a busy 
 
 
 def transform(frame, stamp, position=(0, 0, 0), rotation=(0, 0, 0, 1), parent='world'):
-    """`stamp` in seconds."""
+    """`stamp`: a time, or seconds."""
     message = TransformStamped()
     message.header.frame_id = parent
-    message.header.stamp = rospy.Time.from_sec(stamp)
+    message.header.stamp = stamp if isinstance(stamp, rospy.Time) else rospy.Time.from_sec(stamp)
     message.child_frame_id = frame
     message.transform.translation = Vector3(*position)
     message.transform.rotation = Quaternion(*rotation)

@@ -11,9 +11,10 @@ import rosbag
 import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import TransformStamped
 from sensor_msgs.msg import PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
+
+from cable_client import transform
 
 SCRIPTS = os.path.join(rospkg.RosPack().get_path('verlet_cable'), 'scripts')
 sys.path.insert(0, SCRIPTS)
@@ -55,18 +56,6 @@ def cloud(row, height=1, padding=0):
     message.fields = [PointField(name, offset, kind, 1) for name, offset, kind in (
         ('x', 0, PointField.FLOAT32), ('y', 4, PointField.FLOAT32), ('z', 8, PointField.FLOAT32), ('rgb', 16, PointField.FLOAT32),
         ('label', 20, PointField.UINT32))]
-    return message
-
-
-def transform(parent, child, time, position, quaternion):
-    message = TransformStamped()
-    message.header.stamp = time
-    message.header.frame_id = parent
-    message.child_frame_id = child
-    for axis, value in zip('xyz', position):
-        setattr(message.transform.translation, axis, value)
-    for axis, value in zip('xyzw', quaternion):
-        setattr(message.transform.rotation, axis, value)
     return message
 
 
@@ -123,13 +112,13 @@ class BagsToCsv(WithFiles):
     @staticmethod
     def write_tf(bag):
         """A hand on an arm that moves at twice the rate of the clouds, with a tool that is fixed to it."""
-        bag.write('/tf_static', TFMessage([transform('world', 'camera', stamp(0), (0, 0, 2), (1, 0, 0, 0)),
-                                           transform('hand', 'tool', stamp(0), (0.1, 0, 0), (0, 0, 0, 1))]), stamp(0))
+        bag.write('/tf_static', TFMessage([transform('camera', stamp(0), (0, 0, 2), (1, 0, 0, 0), 'world'),
+                                           transform('tool', stamp(0), (0.1, 0, 0), (0, 0, 0, 1), 'hand')]), stamp(0))
         for half in range(-4, 2 * ROWS + 4):
             time = stamp(0.5 * half)
-            bag.write('/tf', TFMessage([transform('world', 'arm', time, (0, 0.01 * half, 0.5), (0, 0, HALF, HALF))]), time)
+            bag.write('/tf', TFMessage([transform('arm', time, (0, 0.01 * half, 0.5), (0, 0, HALF, HALF), 'world')]), time)
             if half % 4 == 0:
-                bag.write('/tf', TFMessage([transform('arm', 'hand', time, (0, 0, 0.1), (0, 0, 0, 1))]), time)
+                bag.write('/tf', TFMessage([transform('hand', time, (0, 0, 0.1), (0, 0, 0, 1), 'arm')]), time)
 
     def convert(self, topic, *arguments, output=None):
         return self.run_it('--bag', self.bag, '--points', topic, *arguments, output=output)

@@ -13,10 +13,11 @@ import rosbag
 import rospkg
 import rospy
 import rostest
-from geometry_msgs.msg import Point, TransformStamped
+from geometry_msgs.msg import Point
 from sensor_msgs.msg import PointCloud2, PointField
 from tf2_msgs.msg import TFMessage
 
+from cable_client import transform
 from verlet_cable.msg import Cable, CableArray
 
 SCRIPTS = os.path.join(rospkg.RosPack().get_path('verlet_cable'), 'scripts')
@@ -57,18 +58,6 @@ def cloud(row, points):
     return message
 
 
-def transform(child, row, position, quaternion):
-    message = TransformStamped()
-    message.header.stamp = stamp(row)
-    message.header.frame_id = 'world'
-    message.child_frame_id = child
-    for axis, value in zip('xyz', position):
-        setattr(message.transform.translation, axis, value)
-    for axis, value in zip('xyzw', quaternion):
-        setattr(message.transform.rotation, axis, value)
-    return message
-
-
 class RecordToCsv(unittest.TestCase):
     def setUp(self):
         directory = tempfile.TemporaryDirectory()
@@ -80,9 +69,9 @@ class RecordToCsv(unittest.TestCase):
             for row in range(ROWS):
                 half = np.sqrt(0.5)
                 bag.write('/tf', TFMessage([
-                    transform('camera', row, (0, 0, 2), (1, 0, 0, 0)),
-                    transform('start_hand', row, (0, 0.01 * row, 0.5), (0, 0, 0, 1)),
-                    transform('end_hand', row, (0.7, 0.1 + 0.01 * row, 0), (0, 0, half, half)),
+                    transform('camera', stamp(row), (0, 0, 2), (1, 0, 0, 0)),
+                    transform('start_hand', stamp(row), (0, 0.01 * row, 0.5), (0, 0, 0, 1)),
+                    transform('end_hand', stamp(row), (0.7, 0.1 + 0.01 * row, 0), (0, 0, half, half)),
                 ]), stamp(row))
                 bag.write('/cable/state', state(row), stamp(row))
                 seen = nodes_at(row) * [1, -1, -1] + [0, 0, 2]

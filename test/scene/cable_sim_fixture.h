@@ -78,7 +78,10 @@ class CableSim : public testing::Test {
 
   /// Exit status of the program; what it printed is in `out` and `err`. `before`: commands of the same shell.
   int run(const std::string& arguments, const std::string& before = "") {
-    const std::string command = before + CABLE_SIM_PROGRAM + " " + arguments + " > " + path("out") + " 2> " + path("err");
+    return run_program(CABLE_SIM_PROGRAM, arguments, before);
+  }
+  int run_program(const std::string& program, const std::string& arguments, const std::string& before) {
+    const std::string command = before + program + " " + arguments + " > " + path("out") + " 2> " + path("err");
     const int status = std::system(command.c_str());
     out = content(path("out"));
     err = content(path("err"));

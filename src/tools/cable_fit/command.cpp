@@ -144,12 +144,12 @@ std::string shell_text(const std::string& path) {
 
 /// Which files were written, and how to look at the scene among them.
 std::string written_and_next(const Options& options) {
-  std::string text = written_text({&options.output, &options.centre_line, &options.report, &options.predictions});
-  if (text.empty()) return "";
-  if (tools::is_standard_output(options.output)) return text;
-  text.pop_back();
-  return text + "; see it with: roslaunch verlet_cable replay.launch data:=" + shell_text(options.recordings.front()) +
-         " scene:=" + shell_text(options.output) + "\n";
+  const std::string next =
+      tools::is_standard_output(options.output)
+          ? ""
+          : "; see it with: roslaunch verlet_cable replay.launch data:=" + shell_text(options.recordings.front()) +
+                " scene:=" + shell_text(options.output);
+  return written_text({&options.output, &options.centre_line, &options.report, &options.predictions}, next);
 }
 
 }  // namespace

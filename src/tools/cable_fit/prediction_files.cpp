@@ -1,7 +1,6 @@
 #include "prediction_files.h"
 
 #include <filesystem>
-#include <iostream>
 
 #include "common/messages.h"
 #include "common/output_file.h"

@@ -27,11 +27,11 @@ bool report_failures(const std::vector<std::string>& failures) {
   return good;
 }
 
-std::string written_text(const std::vector<const std::string*>& paths) {
+std::string written_text(const std::vector<const std::string*>& paths, const std::string& next) {
   std::string files;
   for (const std::string* path : paths)
     if (!path->empty() && !tools::is_standard_output(*path)) files += (files.empty() ? "" : ", ") + tools::path_text(*path);
-  return files.empty() ? "" : "written: " + files + "\n";
+  return files.empty() ? "" : "written: " + files + next + "\n";
 }
 
 }  // namespace verlet_cable::cable_fit

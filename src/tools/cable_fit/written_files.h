@@ -13,6 +13,7 @@ void check_output(const char* option, const std::string& path, const std::vector
 bool report_failures(const std::vector<std::string>& failures);
 
 /// A line that names the files that were written: those that are not empty, and not standard output. Empty if there is none.
-std::string written_text(const std::vector<const std::string*>& paths);
+/// `next`: what goes on that line behind them.
+std::string written_text(const std::vector<const std::string*>& paths, const std::string& next = "");
 
 }  // namespace verlet_cable::cable_fit
